@@ -1,0 +1,22 @@
+# Flags of every target of ours: warnings, floating point as written, sanitizers.
+add_library(raytree_options INTERFACE)
+target_include_directories(raytree_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(raytree_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused
+  # Pixels must not depend on what a compiler likes to fuse.
+  -ffp-contract=off
+  # errno and floating-point traps of math functions are not used; values do not change.
+  -fno-math-errno -fno-trapping-math)
+if(RAYTREE_WARNINGS_AS_ERRORS)
+  target_compile_options(raytree_options INTERFACE -Werror)
+endif()
+if(RAYTREE_NATIVE)
+  target_compile_options(raytree_options INTERFACE -march=native)
+endif()
+if(RAYTREE_SANITIZE)
+  target_compile_options(raytree_options INTERFACE -fsanitize=${RAYTREE_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
+  target_link_options(raytree_options INTERFACE -fsanitize=${RAYTREE_SANITIZE})
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)

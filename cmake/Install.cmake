@@ -1,0 +1,3 @@
+# `cmake --install` lays out a program that finds its module wherever the tree is moved to.
+include(GNUInstallDirs)
+install(TARGETS raytree RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -1,0 +1,176 @@
+// A scene as its file tells it: pure data, nothing loaded, nothing built. scene_fields.h says which key of the
+// file fills which member; prepare() in scene.h makes the immutable Scene of it.
+// World: right-handed, Y up, metres unless the scene means otherwise. Colors are linear Rec.709.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "geometry/error.h"
+#include "geometry/polygon_mesh.h"
+#include "geometry/vec.h"
+#include "renderer/color.h"
+
+namespace raytree {
+
+inline constexpr int kSceneVersion = 1;  ///< the value of the key "raytree" that heads a scene file
+
+struct CameraDescription {
+  enum class Projection { perspective, orthographic };
+  std::string name;
+  Projection projection = Projection::perspective;
+  Vec3d position{0, 0, 5};
+  Vec3d target{0, 0, 0};
+  Vec3d up{0, 1, 0};
+  double field_of_view = 40;  ///< perspective: vertical, degrees, between 0 and 180
+  double height = 2;          ///< orthographic: of the window, scene units
+};
+
+struct ImageDescription {
+  int width = 960;  ///< pixels
+  int height = 540;
+};
+
+struct Antialiasing {
+  enum class Method { none, grid };
+  Method method = Method::none;
+  int grid_size = 1;  ///< grid: grid_size^2 samples a pixel, at the centres of equal cells
+};
+
+enum class HighlightForm {
+  reflected,  ///< Phong 1973, eq. 4.5: angle between reflected light and the line of sight
+  halfway     ///< Whitted 1980, eq. 1: angle between normal and halfway vector
+};
+
+struct RenderSettings {
+  int depth = 8;               ///< levels of the ray tree; the eye ray is level 1
+  double cutoff = 1.0 / 1020;  ///< largest radiance that cutting branches may take from a sample; 0: cut none
+  Antialiasing antialias;
+  HighlightForm highlights = HighlightForm::reflected;
+  bool shadows = true;
+  bool shadowed_highlights =
+      true;              ///< a shadow takes the highlight too (a departure from Whitted, who names the diffuse term)
+  bool fresnel = false;  ///< k_s F and k_t (1 - F) in place of constant k_s and k_t
+  double distance_attenuation = 0;  ///< a of max(0, 1 - a t) on child segments, per scene unit; 0: off
+};
+
+struct ConstantBackground {
+  Rgb color{0, 0, 0};
+};
+/// Blend by the height of the direction: `bottom` straight down, `horizon` level, `top` straight up.
+struct GradientBackground {
+  Rgb bottom{0.4f, 0.4f, 0.4f}, horizon{0.7f, 0.8f, 0.9f}, top{0.15f, 0.3f, 0.6f};
+};
+using Background = std::variant<ConstantBackground, GradientBackground>;
+
+struct DirectionalLight {
+  Vec3d direction{0, -1, 0};  ///< the way the light travels; need not be unit, must not be zero
+};
+struct PointLight {
+  Vec3d position{0, 10, 0};
+};
+struct LightDescription {
+  std::string name;
+  Rgb color{1, 1, 1};  ///< intensity I of Whitted's sums (no falloff with distance)
+  std::variant<DirectionalLight, PointLight> kind;
+};
+
+/// A checkerboard over two coordinates of the hit point.
+struct CheckerPattern {
+  enum class Plane { xz, xy, yz, uv };  ///< world axes, or the surface's texture coordinates
+  Rgb even{0.9f, 0.9f, 0.9f}, odd{0.1f, 0.1f, 0.1f};
+  double size = 1;  ///< edge of one square, scene units (texture units for uv)
+  Plane plane = Plane::xz;
+  Vec2d offset{0, 0};  ///< where a corner of an even square lies, in the same units
+};
+using ColorPattern = std::variant<Rgb, CheckerPattern>;
+
+struct HighlightDescription {
+  Rgb weight{0, 0, 0};   ///< W of Phong's eq. 4.5, multiplied by the light's color
+  double exponent = 20;  ///< n, >= 1
+};
+
+/// Coefficients of Whitted's eq. 2. Side is decided by the geometric normal; outside has index 1.
+struct MaterialDescription {
+  std::string name;
+  ColorPattern diffuse = Rgb(0.8f);     ///< k_d
+  std::optional<ColorPattern> ambient;  ///< share of the scene's ambient light reflected; default: as diffuse
+  HighlightDescription highlight;
+  Rgb reflection{0, 0, 0};           ///< k_s
+  Rgb transmission{0, 0, 0};         ///< k_t
+  double index_of_refraction = 1.5;  ///< of the inside over the outside, > 0
+};
+
+// --- shapes -------------------------------------------------------------------------------------------------
+
+/// Where vertex normals come from.
+enum class NormalSource {
+  file,    ///< the file's own; where it has none, as smooth
+  smooth,  ///< angle-weighted mean of the faces within the crease angle
+  flat     ///< the face's own
+};
+
+struct MeshShape {
+  std::string file;  ///< .obj or .ply, relative to the scene file; empty: `mesh` is already there
+  NormalSource normals = NormalSource::file;
+  double crease_angle = 40;  ///< degrees; faces that meet at a larger angle share no normal
+  /// The loaded mesh (also for polygons given in the scene file). Consumed by prepare().
+  std::shared_ptr<PolygonMesh> mesh;
+};
+struct SphereShape {
+  Vec3d center{0, 0, 0};
+  double radius = 1;
+};
+/// Infinite, through `point`.
+struct PlaneShape {
+  Vec3d point{0, 0, 0};
+  Vec3d normal{0, 1, 0};
+};
+struct DiscShape {
+  Vec3d center{0, 0, 0};
+  Vec3d normal{0, 1, 0};
+  double radius = 1;
+};
+/// A fractal height field over the square [-size/2, size/2]^2 in x and z.
+struct TerrainShape {
+  std::int64_t triangles = 1'000'000;  ///< up to 50 million; the count made is the nearest that a grid allows
+  double size = 10;                    ///< edge of the square
+  double height = 2.2;                 ///< between the lowest and the highest point, about
+  double roughness = 0.5;              ///< amplitude ratio of successive octaves, (0, 1)
+  std::uint32_t seed = 1980;
+};
+/// A sphere that carries nine smaller ones, each of which carries nine, in the manner of SPD's balls.
+struct SphereFlakeShape {
+  int levels = 4;  ///< spheres: (9^(levels + 1) - 1) / 8
+  Vec3d center{0, 0, 0};
+  double radius = 1;
+};
+using ShapeKind = std::variant<MeshShape, SphereShape, PlaneShape, DiscShape, TerrainShape, SphereFlakeShape>;
+
+struct ShapeDescription {
+  std::string name;
+  std::string material;  ///< a name in SceneDescription::materials; empty: the default material
+  Matrix44d transform;   ///< object to world, row vectors; identity by default
+  ShapeKind kind;
+  SourceLocation where;  ///< for messages
+};
+
+struct SceneDescription {
+  std::string name;    ///< file or built-in name
+  std::string folder;  ///< that mesh files are relative to; empty: the working folder
+  std::string title;   ///< free text
+  ImageDescription image;
+  RenderSettings render;
+  Background background;
+  Rgb ambient{0.2f, 0.2f, 0.2f};
+  std::vector<CameraDescription> cameras;  ///< the first is the default one
+  std::vector<LightDescription> lights;
+  std::vector<MaterialDescription> materials;
+  std::vector<ShapeDescription> shapes;
+};
+
+}  // namespace raytree
