@@ -40,10 +40,10 @@ SurfacePoint flat_surface(const Vec3d& through, const Vec3d& normal, const Vec3f
   SurfacePoint point;
   point.position = Vec3f(position);
   point.geometric_normal = point.shading_normal = Vec3f(normal);
-  const Vec3d n(std::abs(normal.x), std::abs(normal.y), std::abs(normal.z));
-  point.clearance = static_cast<float>(kSurfaceError * (n.x * std::max(std::abs(position.x), std::abs(through.x)) +
-                                                        n.y * std::max(std::abs(position.y), std::abs(through.y)) +
-                                                        n.z * std::max(std::abs(position.z), std::abs(through.z))));
+  const auto largest = [&](int axis) {
+    return static_cast<float>(std::max(std::abs(position[axis]), std::abs(through[axis])));
+  };
+  point.clearance = clearance(point.geometric_normal, {largest(0), largest(1), largest(2)});
   point.distance = static_cast<float>(distance);
   return point;
 }

@@ -15,6 +15,10 @@ namespace raytree {
 /// starts there errs by as much again; 64 half ulps cover both (tests/renderer/self_intersection_test.cpp).
 inline constexpr float kSurfaceError = 64 * 0x1p-24f;
 
+/// Share of the largest coordinate that counts as error in every direction: a floor at height 0 has no error in height,
+/// yet a ray must start off it, not on it.
+inline constexpr float kLeastError = 0x1p-10f;
+
 struct SurfacePoint {
   Vec3f position;          ///< scene space
   Vec3f geometric_normal;  ///< unit, outward (as wound); not turned to the ray
@@ -28,6 +32,14 @@ inline Vec3f unit(const Vec3f& v) { return v * (1 / std::sqrt(v.dot(v))); }
 inline Vec3d unit(const Vec3d& v) { return v * (1 / std::sqrt(v.dot(v))); }
 
 namespace detail {
+
+/// Distance from which a new ray starts, for a point computed from coordinates of up to `largest` per component. Per
+/// component, since a horizontal floor of 1e4 units has next to no error in height, however wide it is.
+inline float clearance(const Vec3f& normal, const Vec3f& largest) {
+  return kSurfaceError *
+         (std::abs(normal.x) * largest.x + std::abs(normal.y) * largest.y + std::abs(normal.z) * largest.z +
+          kLeastError * std::max(largest.x, std::max(largest.y, largest.z)));
+}
 
 SurfacePoint sphere_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit);
 SurfacePoint disc_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit);
@@ -45,13 +57,11 @@ inline SurfacePoint triangle_surface(const TriangleMesh& mesh, const Hit& hit, b
   point.geometric_normal =
       length_squared > 0 ? normal * (1 / std::sqrt(length_squared)) : Vec3f(unit(Vec3d(b - a).cross(Vec3d(c - a))));
 
-  // Per component: a horizontal floor of 1e4 units has no error in height, however wide it is.
-  const Vec3f& n = point.geometric_normal;
   const auto largest = [](float x, float y, float z) {
     return std::max(std::abs(x), std::max(std::abs(y), std::abs(z)));
   };
-  point.clearance = kSurfaceError * (std::abs(n.x) * largest(a.x, b.x, c.x) + std::abs(n.y) * largest(a.y, b.y, c.y) +
-                                     std::abs(n.z) * largest(a.z, b.z, c.z));
+  point.clearance =
+      clearance(point.geometric_normal, {largest(a.x, b.x, c.x), largest(a.y, b.y, c.y), largest(a.z, b.z, c.z)});
   point.distance = hit.distance;
 
   point.shading_normal = point.geometric_normal;
