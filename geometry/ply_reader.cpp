@@ -171,25 +171,19 @@ class PlyParser {
 
   // ---- header
 
-  /// The next header line without its end; false at the end of the file.
+  /// The next header line; false at the end of the file. Lines end with a line feed, a carriage return before it being a
+  /// blank, so that binary data may begin with either; with a lone carriage return where the first line does.
   bool next_line(std::string_view& line) {
     if (cursor_ >= bytes_.size()) return false;
-    std::size_t end = cursor_;
-    while (end < bytes_.size() && bytes_[end] != '\n' && bytes_[end] != '\r') ++end;
-    line = bytes_.substr(cursor_, end - cursor_);
-    ++header_lines_;
-    if (end < bytes_.size()) {
-      if (header_lines_ == 1) {
-        if (bytes_[end] == '\n')
-          line_end_ = "\n";
-        else
-          line_end_ = end + 1 < bytes_.size() && bytes_[end + 1] == '\n' ? "\r\n" : "\r";
-      }
-      // The end of every line is what the first line ended with, so that binary data which happens to begin with a
-      // line feed keeps it; a lone other one is accepted as well.
-      end += bytes_.substr(end, line_end_.size()) == line_end_ ? line_end_.size() : 1;
+    if (header_lines_ == 0) {
+      const std::size_t first_end = bytes_.find_first_of("\r\n");
+      if (first_end != std::string_view::npos && bytes_[first_end] == '\r' && bytes_.substr(first_end + 1, 1) != "\n")
+        newline_ = '\r';
     }
-    cursor_ = end;
+    const std::size_t end = std::min(bytes_.find(newline_, cursor_), bytes_.size());
+    line = bytes_.substr(cursor_, end - cursor_);
+    cursor_ = std::min(end + 1, bytes_.size());
+    ++header_lines_;
     return true;
   }
 
@@ -210,6 +204,7 @@ class PlyParser {
     if (!next_line(line) || words_of(line) != std::vector<std::string_view>{"ply"})
       fail("not a PLY file: it does not begin with a line 'ply'");
     bool has_format = false;
+    std::int64_t unknown_lines = 0;
     for (;;) {
       if (!next_line(line)) fail("the header has no end_header line", header_lines_);
       const std::int64_t number = header_lines_;
@@ -252,9 +247,12 @@ class PlyParser {
         property.name = words[is_list ? 4 : 2];
         elements_.back().properties.push_back(std::move(property));
       } else {
-        fail("unknown header keyword " + in_quotes(words[0]) +
-                 "; known are format, comment, obj_info, element, property, end_header",
-             number);
+        if (unknown_lines++ == 0) {
+          warnings_.push_back({{name_, number, {}},
+                               "unknown header lines skipped, the first is " + in_quotes(words[0]) +
+                                   "; known are format, comment, obj_info, element, property, end_header"});
+        }
+        warnings_.back().count = unknown_lines;
       }
     }
     if (!has_format) fail("the header has no format line", header_lines_);
@@ -453,6 +451,7 @@ class PlyParser {
       }
       p = after;
     }
+    if (p != end) warnings_.push_back({{name_, 0, {}}, "bytes after the last element dropped", end - p});
   }
 
   float* target(Role role, std::size_t vertex) {
@@ -638,7 +637,6 @@ class PlyParser {
   }
 
   void read_ascii() {
-    newline_ = line_end_ == "\r" ? '\r' : '\n';
     if (!read_ascii_lines()) read_ascii_tokens();
   }
 
@@ -906,7 +904,6 @@ class PlyParser {
   Warnings& warnings_;
   std::size_t cursor_ = 0;  // while reading the header
   std::int64_t header_lines_ = 0;
-  std::string line_end_ = "\n";
   char newline_ = '\n';
   std::string_view body_;
   Format format_ = Format::ascii;
