@@ -34,7 +34,7 @@ class FaceCutter {
     project(positions, corners, size);
     if (extent_ == 0 || area_ <= kNoArea * extent_ * extent_) {
       fan();
-      return true;  // without area there is nothing to overlap
+      return areas_agree();  // all in a line, or parts that cancel each other
     }
     if (fan_covers()) {
       fan();
@@ -61,6 +61,12 @@ class FaceCutter {
     const auto area = [&](int a, int b, int c) { return (p[b] - p[a]).cross(p[c] - p[a]).dot(normal); };
     const double worst02 = std::min(area(0, 1, 2), area(0, 2, 3));
     const double worst13 = std::min(area(1, 2, 3), area(1, 3, 0));
+    const double extent2 = std::max(diagonal02.length2(), diagonal13.length2());
+    if (normal.length() <= kNoArea * extent2) {
+      // Either all corners lie in a line, or two wings of a crossed quad cancel each other.
+      triangles_ = {{0, 1, 2}, {0, 2, 3}};
+      return (p[1] - p[0]).cross(diagonal02).length() <= kNoArea * extent2;
+    }
     const double least = kNoArea * normal.length2();
     bool split02 = worst02 >= worst13;
     if (worst02 > least && worst13 > least) split02 = diagonal02.length2() <= diagonal13.length2();
