@@ -92,14 +92,14 @@ TEST(SphereFlake, SixChildrenOnTheEquatorAndThreeAbove) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(above[i], 45 + 120.0 * double(i), 1e-4);
 }
 
-// The six on the equator are exactly 4/3 / 2 / (1/3) = 2 child diameters apart in chord, so siblings never overlap: the
-// least distance of two sibling centers is min(equator neighbors 4/3, equator to upper 4/3 sqrt(2 - 2 cos)) >= 2/3.
+// Neighbors on the equator stand 60 degrees apart; an upper child and the equator's nearest have the angle of cosine
+// cos(30) sqrt(1/3) = 1/2, 60 degrees again. So the least distance of two centers is the chord 4/3, twice 2/3 that two
+// radii of 1/3 take.
 TEST(SphereFlake, SiblingsDoNotOverlap) {
   const SphereArrays spheres = make_sphere_flake(flake(1));
   double least = 10;
   for (std::size_t i = 1; i < 10; ++i)
     for (std::size_t j = i + 1; j < 10; ++j) least = std::min(least, distance(spheres.centers[i], spheres.centers[j]));
-  // Upper child against the two equator children 30 degrees of azimuth away: cos = cos(30) sqrt(1/3) = 1/2.
   EXPECT_NEAR(least, 4.0 / 3, kCenterError);
   EXPECT_GE(least, 2.0 / 3);
 }
