@@ -52,7 +52,7 @@ DisplayTransform transform_of(const std::string& display, const std::string& vie
 float shown(const DisplayTransform& transform, float value) {
   float rgb[3] = {value, value, value};
   transform.apply(rgb, 1);
-  EXPECT_EQ(rgb[0], rgb[1]);
+  EXPECT_NEAR(rgb[0], rgb[1], 4e-6);  // gray stays gray, but for the ACES matrices in float
   return rgb[1];
 }
 
