@@ -36,9 +36,8 @@ FaceLists face_lists(const PolygonMesh& mesh, const Buffer<std::uint32_t>& corne
 }  // namespace
 
 std::shared_ptr<PolygonMesh> polygon_mesh(
-    const InlineMesh& lists,
-    const std::function<void(const std::string& key, std::int64_t index, std::int64_t line, const std::string& message)>&
-        refuse) {
+    const InlineMesh& lists, const std::function<void(const std::string& key, std::int64_t index, std::int64_t line,
+                                                      const std::string& message)>& refuse) {
   const auto check_indices = [&](const std::string& key, const FaceLists& faces, const std::string& target,
                                  std::size_t count) {
     std::size_t corner = 0;

@@ -3,21 +3,16 @@
 #include "renderer/json_document.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "geometry/error.h"
+#include "renderer/json_writer.h"
 
 namespace raytree {
 namespace {
-
-constexpr std::size_t kTreeBytesFixed = std::size_t(160) << 20;
 
 /// Copies share one position, so that whoever made the first sees what the lexer's copy has consumed.
 class ConsumingIterator {
@@ -34,7 +29,9 @@ class ConsumingIterator {
   reference operator*() const { return **position_; }
   ConsumingIterator& operator++() { return ++*position_, *this; }
   ConsumingIterator operator++(int) { return ++*position_, *this; }
-  friend bool operator==(const ConsumingIterator& a, const ConsumingIterator& b) { return *a.position_ == *b.position_; }
+  friend bool operator==(const ConsumingIterator& a, const ConsumingIterator& b) {
+    return *a.position_ == *b.position_;
+  }
   friend bool operator!=(const ConsumingIterator& a, const ConsumingIterator& b) { return !(a == b); }
 
  private:
@@ -64,12 +61,12 @@ class JsonTreeBuilder {
   using string_t = nlohmann::json::string_t;
   using binary_t = nlohmann::json::binary_t;
 
-  JsonTreeBuilder(std::string_view text, const std::string& name, JsonDocument& document)
+  JsonTreeBuilder(std::string_view text, const std::string& name, std::size_t spare_bytes, JsonDocument& document)
       : name_(name),
         document_(document),
         consumed_(text.data()),
         counted_(text.data()),
-        byte_limit_(text.size() + text.size() / 4 * 3 + kTreeBytesFixed) {}
+        byte_limit_(text.size() + text.size() / 4 * 3 + spare_bytes) {}
 
   const char** position() { return &consumed_; }
 
@@ -147,8 +144,14 @@ class JsonTreeBuilder {
 
 namespace {
 
-// The lexer buffers a token several times over, so one of a gigabyte would take several: find it beforehand.
-void refuse_long_tokens(std::string_view text, const std::string& name) {
+// The lexer buffers a token several times over, so one of a gigabyte would take several; and it takes a zero byte for
+// the end, whatever follows. Both are found beforehand.
+void refuse_bad_bytes(std::string_view text, const std::string& name) {
+  const auto refuse = [&](std::size_t where, const char* message) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(where), '\n');
+    throw Error(ErrorKind::bad_input, {name, line, ""}, message);
+  };
+  if (const auto zero = text.find('\0'); zero != text.npos) refuse(zero, "not valid JSON: a byte of value 0");
   std::size_t start = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -162,20 +165,17 @@ void refuse_long_tokens(std::string_view text, const std::string& name) {
     } else if (c == '\\' && in_string) {
       ++i;
     }
-    if (i >= start && i - start > kMaxJsonToken) {
-      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(start), '\n');
-      throw Error(ErrorKind::bad_input, {name, line, ""}, "a string or number longer than 1 MiB");
-    }
+    if (i >= start && i - start > kMaxJsonToken) refuse(start, "a string or number longer than 1 MiB");
   }
 }
 
 }  // namespace
 
-JsonDocument JsonDocument::parse(std::string_view text, const std::string& name) {
+JsonDocument JsonDocument::parse(std::string_view text, const std::string& name, std::size_t spare_bytes) {
   if (text.size() > kMaxJsonText) throw Error(ErrorKind::bad_input, {name, 0, ""}, "scene text larger than 1 GiB");
-  refuse_long_tokens(text, name);
+  refuse_bad_bytes(text, name);
   JsonDocument document;
-  JsonTreeBuilder builder(text, name, document);
+  JsonTreeBuilder builder(text, name, spare_bytes, document);
   const char* end = text.data() + text.size();
   // Every refusal is thrown by the builder, which knows the line; false cannot come back.
   (void)nlohmann::json::sax_parse(ConsumingIterator(builder.position()), ConsumingIterator(&end), &builder);
@@ -219,11 +219,8 @@ std::string description_of(JsonValue value) {
       return "null";
     case JsonKind::boolean:
       return value.boolean() ? "true" : "false";
-    case JsonKind::number: {
-      std::array<char, 40> text{};
-      const auto end = std::to_chars(text.data(), text.data() + text.size(), value.number()).ptr;
-      return {text.data(), end};
-    }
+    case JsonKind::number:
+      return number_text(value.number());
     case JsonKind::string:
       return in_quotes(value.string());
     case JsonKind::array:

@@ -16,6 +16,8 @@ inline constexpr int kMaxJsonDepth = 100;                           ///< nested 
 inline constexpr std::size_t kMaxJsonText = std::size_t(1) << 30;   ///< bytes of one document
 inline constexpr std::size_t kMaxJsonToken = std::size_t(1) << 20;  ///< bytes of one string or number
 
+inline constexpr std::size_t kJsonTreeBytes = std::size_t(160) << 20;  ///< see JsonDocument::parse
+
 class JsonDocument;
 struct JsonMember;
 
@@ -52,10 +54,10 @@ struct JsonMember {
 
 class JsonDocument {
  public:
-  /// Parses a whole document (RFC 8259, a UTF-8 byte order mark is skipped). Throws Error (bad_input) with `name` and the
-  /// line for what is not JSON, too deep, too long, or made of so many tiny values that its tree would take more than
-  /// 1.75 times the text plus 160 MiB.
-  static JsonDocument parse(std::string_view text, const std::string& name);
+  /// Parses a whole document (RFC 8259, a UTF-8 byte order mark is skipped). Throws Error (bad_input) with `name` and
+  /// the line for what is not JSON, too deep, too long, or made of so many tiny values that its tree would take more
+  /// than 1.75 times the text plus `spare_bytes`.
+  static JsonDocument parse(std::string_view text, const std::string& name, std::size_t spare_bytes = kJsonTreeBytes);
   /// A document of one string.
   static JsonDocument of_string(std::string_view text);
 

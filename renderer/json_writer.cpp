@@ -2,14 +2,15 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace raytree {
 namespace {
 
-template <class T>
-std::string shortest(T number) {
+template <class... Arguments>
+std::string characters(Arguments... arguments) {
   std::array<char, 48> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), arguments...).ptr;
   return {text.data(), end};
 }
 
@@ -38,6 +39,12 @@ void append_escaped(std::string& out, std::string_view text) {
 
 }  // namespace
 
+std::string number_text(double number) {
+  constexpr double kLargestPlain = 1e15;
+  const bool plain = std::abs(number) < kLargestPlain && number == std::floor(number);
+  return plain ? characters(number, std::chars_format::fixed) : characters(number);
+}
+
 void JsonWriter::key(std::string_view name) {
   separate();
   append_escaped(text_, name);
@@ -50,15 +57,16 @@ void JsonWriter::value(std::string_view text) {
   append_escaped(text_, text);
 }
 void JsonWriter::value(bool truth) { raw(truth ? "true" : "false"); }
-void JsonWriter::value(double number) { raw(shortest(number)); }
-void JsonWriter::value(std::int64_t number) { raw(shortest(number)); }
+void JsonWriter::value(double number) { raw(number_text(number)); }
+void JsonWriter::value(std::int64_t number) { raw(characters(number)); }
 
 void JsonWriter::value(float number) {
+  if (number == std::floor(number)) return raw(number_text(static_cast<double>(number)));
   // A reader makes a double of the text first; rounding twice must not miss the float.
-  const std::string text = shortest(number);
+  const std::string text = characters(number);
   double read = 0;
   std::from_chars(text.data(), text.data() + text.size(), read);
-  raw(static_cast<float>(read) == number ? text : shortest(static_cast<double>(number)));
+  raw(static_cast<float>(read) == number ? text : number_text(static_cast<double>(number)));
 }
 
 void JsonWriter::begin(char bracket, Layout layout) {

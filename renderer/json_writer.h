@@ -9,6 +9,9 @@
 
 namespace raytree {
 
+/// The fewest digits that read back equal; whole numbers below 1e15 without an exponent. Finite.
+std::string number_text(double number);
+
 class JsonWriter {
  public:
   enum class Layout {

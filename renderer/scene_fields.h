@@ -31,9 +31,7 @@ struct Range {
   bool low_open = false;   ///< `low` itself is refused
   bool high_open = false;  ///< `high` itself is refused
 
-  constexpr bool holds(double x) const {
-    return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
-  }
+  constexpr bool holds(double x) const { return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high); }
 };
 inline constexpr Range kNotNegative{0};
 inline constexpr Range kPositive{0, kLargestNumber, true};
@@ -41,11 +39,11 @@ inline constexpr Range kPositive{0, kLargestNumber, true};
 /// One key: what everybody who walks a table is told about it.
 struct Field {
   std::string_view key = {};
-  std::string_view text = {};   ///< for schema and reference; a sentence without its period
-  std::string_view unit = {};   ///< empty: none
-  Range range = {};             ///< of numbers
-  bool required = false;        ///< the reader refuses an object without it
-  bool nonzero = false;         ///< a vector that must not be (0, 0, 0)
+  std::string_view text = {};    ///< for schema and reference; a sentence without its period
+  std::string_view unit = {};    ///< empty: none
+  Range range = {};              ///< of numbers
+  bool required = false;         ///< the reader refuses an object without it
+  bool nonzero = false;          ///< a vector that must not be (0, 0, 0)
   std::string_view absent = {};  ///< what happens without the key, where no default value says so
 };
 
@@ -64,8 +62,8 @@ struct EnumTable;  // specialized below: `entries`
 template <>
 struct EnumTable<CameraDescription::Projection> {
   using E = CameraDescription::Projection;
-  static constexpr std::array<EnumEntry<E>, 2> entries{{{E::perspective, "perspective", "uses field_of_view"},
-                                                        {E::orthographic, "orthographic", "uses height"}}};
+  static constexpr std::array<EnumEntry<E>, 2> entries{
+      {{E::perspective, "perspective", "uses field_of_view"}, {E::orthographic, "orthographic", "uses height"}}};
 };
 template <>
 struct EnumTable<HighlightForm> {
@@ -195,8 +193,9 @@ concept Is = std::same_as<std::remove_const_t<T>, Struct>;
 
 template <class Visitor, Is<ImageDescription> T>
 void visit_fields(Visitor& visit, T& image) {
-  visit(Field{.key = "width", .text = "Width; width times height is at most 2^30", .unit = "pixels", .range = {1, 65536}},
-        image.width);
+  visit(
+      Field{.key = "width", .text = "Width; width times height is at most 2^30", .unit = "pixels", .range = {1, 65536}},
+      image.width);
   visit(Field{.key = "height", .text = "Height", .unit = "pixels", .range = {1, 65536}}, image.height);
 }
 
@@ -233,7 +232,8 @@ template <class Visitor, Is<CameraDescription> T>
 void visit_fields(Visitor& visit, T& camera) {
   visit(Field{.key = "projection", .text = "Kind of projection"}, camera.projection);
   visit(Field{.key = "position", .text = "Where the eye is", .unit = "scene units"}, camera.position);
-  visit(Field{.key = "target", .text = "Point that the middle of the picture shows; not the position",
+  visit(Field{.key = "target",
+              .text = "Point that the middle of the picture shows; not the position",
               .unit = "scene units"},
         camera.target);
   visit(Field{.key = "up", .text = "Direction that is up in the picture; not along the line of sight", .nonzero = true},
@@ -243,10 +243,7 @@ void visit_fields(Visitor& visit, T& camera) {
               .unit = "degrees",
               .range = {0, 180, true, true}},
         camera.field_of_view);
-  visit(Field{.key = "height",
-              .text = "Orthographic: height of the window",
-              .unit = "scene units",
-              .range = kPositive},
+  visit(Field{.key = "height", .text = "Orthographic: height of the window", .unit = "scene units", .range = kPositive},
         camera.height);
 }
 
@@ -285,9 +282,9 @@ void visit_fields(Visitor& visit, T& checker) {
   visit(Field{.key = "even", .text = "Color of the square at `offset` and of every second one", .range = kNotNegative},
         checker.even);
   visit(Field{.key = "odd", .text = "Color of the squares between", .range = kNotNegative}, checker.odd);
-  visit(Field{.key = "size", .text = "Edge of a square", .unit = "scene units, for uv texture units",
-              .range = kPositive},
-        checker.size);
+  visit(
+      Field{.key = "size", .text = "Edge of a square", .unit = "scene units, for uv texture units", .range = kPositive},
+      checker.size);
   visit(Field{.key = "plane", .text = "The two coordinates that the squares lie over"}, checker.plane);
   visit(Field{.key = "offset", .text = "Where a corner of an even square lies", .unit = "as size"}, checker.offset);
 }
@@ -296,7 +293,8 @@ template <class Visitor, Is<HighlightDescription> T>
 void visit_fields(Visitor& visit, T& highlight) {
   visit(Field{.key = "weight", .text = "W of Phong 1973, eq. 4.5, times the light's color", .range = kNotNegative},
         highlight.weight);
-  visit(Field{.key = "exponent", .text = "n of Phong 1973, eq. 4.5; larger is smaller and sharper",
+  visit(Field{.key = "exponent",
+              .text = "n of Phong 1973, eq. 4.5; larger is smaller and sharper",
               .range = {1, kLargestNumber}},
         highlight.exponent);
 }
@@ -347,8 +345,7 @@ void visit_fields(Visitor& visit, T& mesh) {
               .text = "Indices into vertex_normals, in the shape of faces",
               .absent = "one normal a position"},
         mesh.normal_faces);
-  visit(Field{.key = "texture_coordinates",
-              .text = "One pair a position, or what texture_faces refer to"},
+  visit(Field{.key = "texture_coordinates", .text = "One pair a position, or what texture_faces refer to"},
         mesh.texture_coordinates);
   visit(Field{.key = "texture_faces",
               .text = "Indices into texture_coordinates, in the shape of faces",
@@ -403,9 +400,7 @@ void visit_fields(Visitor& visit, T& terrain) {
               .unit = "scene units",
               .range = kNotNegative},
         terrain.height);
-  visit(Field{.key = "roughness",
-              .text = "Ratio of the amplitudes of successive octaves",
-              .range = {0, 1, true, true}},
+  visit(Field{.key = "roughness", .text = "Ratio of the amplitudes of successive octaves", .range = {0, 1, true, true}},
         terrain.roughness);
   visit(Field{.key = "seed", .text = "Another number, another landscape", .range = {0, 4294967295.0}}, terrain.seed);
 }
@@ -424,10 +419,10 @@ void visit_fields(Visitor& visit, T& shape) {
   visit.tagged(Field{.key = kTypeKey, .text = "Kind of shape", .required = true}, shape.kind);
   visit(Field{.key = "material", .text = "Name of a material of this file", .absent = "the default material"},
         shape.material);
-  visit(Field{.key = "transform",
-              .text = "Object to world: a step or a list of steps, applied in order",
-              .absent = "none"},
-        shape.transform);
+  visit(
+      Field{
+          .key = "transform", .text = "Object to world: a step or a list of steps, applied in order", .absent = "none"},
+      shape.transform);
 }
 
 template <class Visitor, Is<TransformStep> T>
@@ -467,14 +462,15 @@ void visit_fields(Visitor& visit, T& scene) {
 /// A struct with a table.
 template <class T>
 concept Table = Is<T, ImageDescription> || Is<T, RenderSettings> || Is<T, CameraDescription> ||
-                Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, HighlightDescription> ||
-                Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, TransformStep> ||
-                Is<T, SceneDescription>;
+    Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, HighlightDescription> || Is<T, MaterialDescription> ||
+    Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.
 template <class T>
-concept Named = requires(T& t) { t.name; } && (Is<T, CameraDescription> || Is<T, LightDescription> ||
-                                               Is<T, MaterialDescription> || Is<T, ShapeDescription>);
+concept Named = requires(T& t) {
+  t.name;
+}
+&&(Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, MaterialDescription> || Is<T, ShapeDescription>);
 
 /// What a named element is called in messages: "material" of "materials".
 template <Named T>
@@ -486,8 +482,7 @@ constexpr std::string_view noun_of() {
 }
 
 template <class E>
-  requires std::is_enum_v<E>
-std::string_view enum_name(E value) {
+requires std::is_enum_v<E> std::string_view enum_name(E value) {
   for (const auto& entry : EnumTable<E>::entries)
     if (entry.value == value) return entry.name;
   return {};
@@ -503,7 +498,8 @@ template <class Variant, class Visit>
 void for_each_alternative(Visit&& visit) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     (visit(std::in_place_type<std::variant_alternative_t<I, Variant>>), ...);
-  }(std::make_index_sequence<std::variant_size_v<Variant>>());
+  }
+  (std::make_index_sequence<std::variant_size_v<Variant>>());
 }
 
 }  // namespace raytree

@@ -18,6 +18,7 @@
 
 #include "renderer/inline_mesh.h"
 #include "renderer/json_document.h"
+#include "renderer/json_writer.h"
 #include "renderer/scene_fields.h"
 #include "renderer/suggestion.h"
 
@@ -29,11 +30,14 @@ constexpr std::size_t kFewMembers = 16;  // up to here comparing all pairs of ke
 /// Where a value stands. A chain of its parents: the path is spelled out only for a message.
 class Place {
  public:
-  explicit Place(const std::string& file) : file_(file) {}
-  Place(const Place& parent, std::string_view key) : file_(parent.file_), parent_(&parent), key_(key) {}
-  Place(const Place& parent, std::int64_t index) : file_(parent.file_), parent_(&parent), index_(index) {}
+  enum class Lines { known, none };
+  explicit Place(const std::string& file, Lines lines = Lines::known) : file_(file), lines_(lines) {}
+  Place(const Place& parent, std::string_view key)
+      : file_(parent.file_), lines_(parent.lines_), parent_(&parent), key_(key) {}
+  Place(const Place& parent, std::int64_t index)
+      : file_(parent.file_), lines_(parent.lines_), parent_(&parent), index_(index) {}
 
-  SourceLocation location(std::int64_t line) const { return {file_, line, path()}; }
+  SourceLocation location(std::int64_t line) const { return {file_, lines_ == Lines::known ? line : 0, path()}; }
   [[noreturn]] void fail(std::int64_t line, const std::string& message) const {
     throw Error(ErrorKind::bad_input, location(line), message);
   }
@@ -51,15 +55,11 @@ class Place {
   }
 
   const std::string& file_;
+  Lines lines_;
   const Place* parent_ = nullptr;
   std::string_view key_;
   std::int64_t index_ = -1;
 };
-
-std::string number_text(double x) {
-  std::array<char, 40> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
-}
 
 std::string range_text(const Range& range) {
   const std::string low = (range.low_open ? "greater than " : "at least ") + number_text(range.low);
@@ -217,7 +217,7 @@ void read(const Place& at, const Field& field, JsonValue value, SceneVersion& ou
 }
 
 template <class E>
-  requires std::is_enum_v<E>
+requires std::is_enum_v<E>
 void read(const Place& at, const Field&, JsonValue value, E& out) {
   if (value.kind() == JsonKind::string)
     for (const auto& entry : EnumTable<E>::entries)
@@ -246,8 +246,8 @@ void read(const Place& at, const Field&, JsonValue value, Antialiasing& out) {
       return;
     }
   }
-  at.fail(value.line(), "unknown value " + description_of(value) + "; known values: \"none\", \"grid:N\" with N from 1 to " +
-                            std::to_string(kMaxGridSize));
+  at.fail(value.line(), "unknown value " + description_of(value) +
+                            "; known values: \"none\", \"grid:N\" with N from 1 to " + std::to_string(kMaxGridSize));
 }
 
 /// `count` numbers into `set(index, number)`.
@@ -296,7 +296,8 @@ void read(const Place& at, const Field& field, JsonValue value, ScaleFactors& ou
   if (value.kind() == JsonKind::number)
     out.value = Vec3d(read_number(at, field, value));
   else
-    read_components(at, field, value, 3, "[x, y, z] or one number for all three", [&](int i, double x) { out.value[i] = x; });
+    read_components(at, field, value, 3, "[x, y, z] or one number for all three",
+                    [&](int i, double x) { out.value[i] = x; });
   if (out.value.x == 0 || out.value.y == 0 || out.value.z == 0) at.fail(value.line(), "a factor must not be 0");
 }
 
@@ -359,10 +360,12 @@ void read(const Place& at, const Field&, JsonValue value, Matrix44d& out) {
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 3; ++j)
         if (!plain.range.holds(product[i][j])) at.fail(value.line(), "the steps' product has numbers larger than 1e18");
-    if (!invertible(product)) at.fail(value.line(), "not invertible: the steps together flatten what they are applied to");
+    if (!invertible(product))
+      at.fail(value.line(), "not invertible: the steps together flatten what they are applied to");
     out = product;
   } else {
-    at.fail(value.line(), "expected a step like {\"translate\": [0, 1, 0]} or a list of steps, not " + description_of(value));
+    at.fail(value.line(),
+            "expected a step like {\"translate\": [0, 1, 0]} or a list of steps, not " + description_of(value));
   }
 }
 
@@ -382,7 +385,8 @@ void read(const Place& at, const Field& field, JsonValue value, ColorPattern& ou
 template <Named T>
 void read(const Place& at, const Field&, JsonValue value, std::vector<T>& out) {
   if (value.kind() != JsonKind::object)
-    at.fail(value.line(), "expected an object of " + std::string(noun_of<T>()) + "s by name, not " + description_of(value));
+    at.fail(value.line(),
+            "expected an object of " + std::string(noun_of<T>()) + "s by name, not " + description_of(value));
   out.clear();
   out.reserve(value.size());
   std::unordered_map<std::string_view, std::int64_t> lines;
@@ -427,7 +431,8 @@ class ObjectReader {
     const std::string_view name = value->kind() == JsonKind::string ? value->string() : std::string_view();
     if (!choose_alternative(name, variant))
       Place(at_, field.key)
-          .fail(value->line(), "unknown type " + description_of(*value) + "; " + choices_text("known types", name, names));
+          .fail(value->line(),
+                "unknown type " + description_of(*value) + "; " + choices_text("known types", name, names));
     std::visit([&](auto& alternative) { visit_fields(*this, alternative); }, variant);
   }
 
@@ -441,13 +446,13 @@ class ObjectReader {
         at_.fail(object_.line(), given_here ? "give either \"file\" or \"positions\" and \"faces\", not both"
                                             : "a mesh needs \"file\", or \"positions\" and \"faces\"");
       if (!given_here) return;
-      mesh.mesh = polygon_mesh(*lists, [&](const std::string& key, std::int64_t index, std::int64_t line,
-                                           const std::string& message) {
-        const auto value = find(key);
-        const Place list(at_, key);
-        const std::int64_t known_line = line > 0 ? line : value ? value->line() : object_.line();
-        (index < 0 ? list : Place(list, index)).fail(known_line, message);
-      });
+      mesh.mesh = polygon_mesh(
+          *lists, [&](const std::string& key, std::int64_t index, std::int64_t line, const std::string& message) {
+            const auto value = find(key);
+            const Place list(at_, key);
+            const std::int64_t known_line = line > 0 ? line : value ? value->line() : object_.line();
+            (index < 0 ? list : Place(list, index)).fail(known_line, message);
+          });
     });
   }
 
@@ -481,8 +486,8 @@ class ObjectReader {
 
   void refuse_duplicates() const {
     const auto refuse = [&](const JsonMember& member, std::int64_t first) {
-      at_.fail(member.line,
-               "the key " + in_quotes(member.key) + " stands here again; the first is on line " + std::to_string(first));
+      at_.fail(member.line, "the key " + in_quotes(member.key) + " stands here again; the first is on line " +
+                                std::to_string(first));
     };
     if (object_.size() <= kFewMembers) {
       std::vector<std::pair<std::string_view, std::int64_t>> seen;
@@ -535,8 +540,9 @@ void read(const Place& at, const Field& field, JsonValue value, ColorPattern& ou
     read(at, field, value, color);
     out = color;
   } else {
-    at.fail(value.line(), "expected a color [r, g, b], a number for a gray, or an object with \"type\": \"checker\", not " +
-                              description_of(value));
+    at.fail(value.line(),
+            "expected a color [r, g, b], a number for a gray, or an object with \"type\": \"checker\", not " +
+                description_of(value));
   }
 }
 
@@ -613,7 +619,8 @@ template <class T>
 void set_value(const Place& at, const Field& field, PathRest rest, const NewValue& value, T& out);
 
 [[noreturn]] void fail_no_parts(const Place& at, PathRest rest) {
-  at.fail(0, "has no part " + in_quotes(rest.text().substr(rest.text().starts_with('.') ? 1 : 0)) + "; set it as a whole");
+  at.fail(0,
+          "has no part " + in_quotes(rest.text().substr(rest.text().starts_with('.') ? 1 : 0)) + "; set it as a whole");
 }
 
 /// A component of a vector or color of `count`.
@@ -621,7 +628,8 @@ int take_component(const Place& at, PathRest& rest, int count) {
   const PathRest whole = rest;
   const auto index = rest.take_index();
   if (!index || *index >= count || !rest.empty())
-    at.fail(0, "no such component: " + in_quotes(whole.text()) + "; they are [0] to [" + std::to_string(count - 1) + "]");
+    at.fail(0,
+            "no such component: " + in_quotes(whole.text()) + "; they are [0] to [" + std::to_string(count - 1) + "]");
   return static_cast<int>(*index);
 }
 
@@ -730,11 +738,11 @@ class PathSetter {
     visit_fields(*this, lists);
     if (was_done || !done_) return;
     if (!mesh.file.empty()) at_.fail(0, "the mesh comes from a file; set the shape as a whole to give its faces");
-    mesh.mesh = polygon_mesh(lists, [&](const std::string& key, std::int64_t index, std::int64_t,
-                                        const std::string& message) {
-      const Place list(at_, key);
-      (index < 0 ? list : Place(list, index)).fail(0, message);
-    });
+    mesh.mesh =
+        polygon_mesh(lists, [&](const std::string& key, std::int64_t index, std::int64_t, const std::string& message) {
+          const Place list(at_, key);
+          (index < 0 ? list : Place(list, index)).fail(0, message);
+        });
   }
 
   void finish() const {
@@ -800,7 +808,7 @@ SceneDescription read_scene_file(const std::string& path) {
 
 void set_scene_value(SceneDescription& scene, const std::string& path, const std::string& value) {
   const std::string file = "--set";
-  const Place root(file);
+  const Place root(file, Place::Lines::none);
   if (path.empty()) root.fail(0, "a path is missing, e.g. render.depth=12");
   JsonDocument document = JsonDocument::of_string(value);
   try {

@@ -171,16 +171,9 @@ class SchemaWriter {
   }
   void bounds(const Range& range) {
     out_.key(range.low_open ? "exclusiveMinimum" : "minimum");
-    bound(range.low);
+    out_.value(range.low);
     out_.key(range.high_open ? "exclusiveMaximum" : "maximum");
-    bound(range.high);
-  }
-  void bound(double x) {
-    // Whole bounds without an exponent: nicer to read.
-    if (x == static_cast<double>(static_cast<std::int64_t>(x)))
-      out_.value(static_cast<std::int64_t>(x));
-    else
-      out_.value(x);
+    out_.value(range.high);
   }
   /// As the value of a key or an element.
   template <class Inside>
@@ -238,7 +231,7 @@ class SchemaWriter {
     bounds(field.range);
   }
   template <class E>
-    requires std::is_enum_v<E>
+  requires std::is_enum_v<E>
   void schema(const Field&, E) {
     out_.key("oneOf");
     out_.begin_array(JsonWriter::Layout::lines);
@@ -304,7 +297,9 @@ class SchemaWriter {
     out_.end_object();
     out_.end_array();
   }
-  void schema(const Field&, const Background& background) { alternatives(background, [](SchemaWriter&) {}); }
+  void schema(const Field&, const Background& background) {
+    alternatives(background, [](SchemaWriter&) {});
+  }
   void schema(const Field&, const Matrix44d&) {
     out_.key("oneOf");
     out_.begin_array(JsonWriter::Layout::lines);
@@ -428,12 +423,12 @@ class ReferenceWriter {
     if constexpr (std::same_as<T, Rgb>) return "color";
     if constexpr (std::same_as<T, ColorPattern>) return "color or checker";
     if constexpr (std::same_as<T, Matrix44d>) return "transform";
-    if constexpr (std::same_as<T, std::vector<Vec3d>> || std::same_as<T, std::vector<Vec3f>>) return "list of `[x, y, z]`";
+    if constexpr (std::same_as<T, std::vector<Vec3d>> || std::same_as<T, std::vector<Vec3f>>)
+      return "list of `[x, y, z]`";
     if constexpr (std::same_as<T, std::vector<Vec2f>>) return "list of `[u, v]`";
     if constexpr (std::same_as<T, FaceLists>) return "list of `[i, j, k, ...]`";
     if constexpr (std::same_as<T, std::vector<FaceGroup>>) return "list of objects";
-    if constexpr (requires(const T& list) { noun_of<typename T::value_type>(); })
-      return "objects by name";
+    if constexpr (requires(const T& list) { noun_of<typename T::value_type>(); }) return "objects by name";
     if constexpr (Table<T> || std::same_as<T, Background>) return "object";
     return {};
   }
@@ -469,18 +464,11 @@ class ReferenceWriter {
     if constexpr (std::integral<T> || std::floating_point<T> || std::same_as<T, Rgb> || std::same_as<T, ColorPattern> ||
                   std::same_as<T, std::optional<ColorPattern>>) {
       if constexpr (std::same_as<T, bool>) return text;
-      const auto number = [](double x) {
-        JsonWriter out;
-        if (x < 1e15)
-          out.value(static_cast<std::int64_t>(x));
-        else
-          out.value(x);
-        return out.text();
-      };
       if (field.range.low > -kLargestNumber)
-        text = (field.range.low_open ? "> " : ">= ") + number(field.range.low);
+        text = (field.range.low_open ? "> " : ">= ") + number_text(field.range.low);
       if (field.range.high < kLargestNumber)
-        text += (text.empty() ? "" : ", ") + std::string(field.range.high_open ? "< " : "<= ") + number(field.range.high);
+        text += (text.empty() ? "" : ", ") + std::string(field.range.high_open ? "< " : "<= ") +
+                number_text(field.range.high);
     }
     if (field.nonzero) text = "not zero";
     if (!field.unit.empty()) text += (text.empty() ? "" : "; ") + std::string(field.unit);

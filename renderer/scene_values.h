@@ -64,10 +64,8 @@ class SceneValueWriter {
   void write(const SceneVersion& version) { out_.value(version.value); }
   void write(const Antialiasing& antialias) { out_.value(std::string_view(antialiasing_text(antialias))); }
   template <class E>
-    requires std::is_enum_v<E>
-  void write(E value) {
-    out_.value(enum_name(value));
-  }
+  requires std::is_enum_v<E>
+  void write(E value) { out_.value(enum_name(value)); }
 
   void write(const Vec2d& v) { components(v.x, v.y); }
   void write(const Vec2f& v) { components(v.x, v.y); }

@@ -91,8 +91,7 @@ inline bool equal(const SphereFlakeShape& a, const SphereFlakeShape& b) {
 }
 template <class... T>
 bool equal(const std::variant<T...>& a, const std::variant<T...>& b) {
-  return a.index() == b.index() &&
-         std::visit([&]<class V>(const V& value) { return equal(value, std::get<V>(b)); }, a);
+  return a.index() == b.index() && std::visit([&]<class V>(const V& value) { return equal(value, std::get<V>(b)); }, a);
 }
 inline bool equal(const LightDescription& a, const LightDescription& b) {
   const auto& [name, color, kind] = a;

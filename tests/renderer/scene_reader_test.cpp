@@ -140,8 +140,10 @@ TEST(SceneReader, RefusalsSayWhatWhereAndWhatWouldBeRight) {
             "s.json:2: lights.sun: unknown key \"direction\"; known keys: type, position, color");
   EXPECT_EQ(refusal("\"shapes\": {\"a b\": {\"type\": \"sphere\",\n\"radius\": 0}}"),
             "s.json:3: shapes.\"a b\".radius: 0 is out of range: must be greater than 0");
-  EXPECT_EQ(refusal("\"materials\": {\"glass\": {}},\n\"shapes\": {\"ball\": {\"type\": \"sphere\", \"material\": \"Glass\"}}"),
-            "s.json:3: shapes.ball: unknown material \"Glass\"; materials of this scene: glass (did you mean \"glass\"?)");
+  EXPECT_EQ(
+      refusal(
+          "\"materials\": {\"glass\": {}},\n\"shapes\": {\"ball\": {\"type\": \"sphere\", \"material\": \"Glass\"}}"),
+      "s.json:3: shapes.ball: unknown material \"Glass\"; materials of this scene: glass (did you mean \"glass\"?)");
   EXPECT_EQ(refusal("\"title\": \"a\",\n\"title\": \"b\""),
             "s.json:3: the key \"title\" stands here again; the first is on line 2");
   EXPECT_EQ(refusal("\"lights\": {\"a\": {\"type\": \"point\"},\n\"a\": {\"type\": \"point\"}}"),
@@ -166,8 +168,7 @@ TEST(SceneReader, TheVersionHeadsTheFile) {
     return "accepted";
   };
   EXPECT_EQ(message("{}"), "s.json:1: missing key \"raytree\"");
-  EXPECT_EQ(message("{\"raytree\": 2}"),
-            "s.json:1: raytree: scene version 2 is unknown; this program reads version 1");
+  EXPECT_EQ(message("{\"raytree\": 2}"), "s.json:1: raytree: scene version 2 is unknown; this program reads version 1");
   EXPECT_EQ(message("\n[]"), "s.json:2: expected an object, not an empty array");
 }
 
@@ -221,7 +222,8 @@ TEST(SceneReader, RangesHoldAtTheirEnds) {
       {R"("shapes": {"s": {"type": "sphere", "center": [2e18, 0, 0]}})", false},
       {R"("title": null)", false},
   };
-  for (const Case& one : cases) EXPECT_EQ(refusal(one.members) == "accepted", one.accepted) << one.members << "\n" << refusal(one.members);
+  for (const Case& one : cases)
+    EXPECT_EQ(refusal(one.members) == "accepted", one.accepted) << one.members << "\n" << refusal(one.members);
 }
 
 // --- transforms ---------------------------------------------------------------------------------------------
@@ -260,9 +262,11 @@ TEST(SceneReader, TransformsMustBeInvertible) {
   EXPECT_EQ(transform_refusal(R"({"scale": [1, 0, 1]})"), "s.json:2: shapes.s.transform.scale: a factor must not be 0");
   EXPECT_NE(transform_refusal(R"({"matrix": [1,0,0,0, 1,0,0,0, 0,0,1,0, 0,0,0,1]})").find("not invertible"),
             std::string::npos);
-  EXPECT_NE(transform_refusal(R"({"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,1, 0,0,0,1]})").find("not affine"), std::string::npos);
-  EXPECT_NE(transform_refusal(R"({"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "scale": 2})").find("step of its own"),
+  EXPECT_NE(transform_refusal(R"({"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,1, 0,0,0,1]})").find("not affine"),
             std::string::npos);
+  EXPECT_NE(
+      transform_refusal(R"({"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "scale": 2})").find("step of its own"),
+      std::string::npos);
   EXPECT_NE(transform_refusal(R"([{"scale": 1e15}, {"scale": 1e15}])").find("larger than 1e18"), std::string::npos);
   EXPECT_EQ(transform_refusal(R"([{"scale": 1}, {"turn": [0, 1, 0]}])"),
             "s.json:2: shapes.s.transform[1]: unknown key \"turn\"; known keys: scale, rotate, translate, matrix");
@@ -271,16 +275,15 @@ TEST(SceneReader, TransformsMustBeInvertible) {
 
 // --- polygons in the scene file -----------------------------------------------------------------------------
 
-const PolygonMesh& mesh_of(const SceneDescription& scene) {
-  return *std::get<MeshShape>(scene.shapes.at(0).kind).mesh;
-}
+const PolygonMesh& mesh_of(const SceneDescription& scene) { return *std::get<MeshShape>(scene.shapes.at(0).kind).mesh; }
 
 std::string mesh_members(const std::string& members) {
   return "\"shapes\": {\"m\": {\"type\": \"mesh\",\n" + members + "}}";
 }
 
 TEST(SceneReader, PolygonsComeFromListsOfIndices) {
-  const SceneDescription scene = scene_of(mesh_members(R"("positions": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 2, 2]],
+  const SceneDescription scene =
+      scene_of(mesh_members(R"("positions": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 2, 2]],
       "faces": [[0, 1, 2, 3], [1, 2, 4]],
       "vertex_normals": [[0, 0, 1], [0, 0, 1], [0, 0, 1], [0, 0, 1], [0, 0, 1]],
       "texture_coordinates": [[0, 0], [1, 1]], "texture_faces": [[0, 1, 0, 1], [1, 1, 1]],
@@ -324,7 +327,8 @@ TEST(SceneReader, PolygonsAreChecked) {
   const std::string positions = R"("positions": [[0, 0, 0], [1, 0, 0], [1, 1, 0]],)";
   EXPECT_EQ(refusal(mesh_members(positions + "\n\"faces\": [[0, 1, 2],\n[0, 1, 3]]")),
             "s.json:5: shapes.m.faces[1]: index 3 is out of range: there are 3 positions, counted from 0");
-  EXPECT_NE(refusal(mesh_members(positions + R"("faces": [[0, 1, -1]])")).find("-1 is out of range"), std::string::npos);
+  EXPECT_NE(refusal(mesh_members(positions + R"("faces": [[0, 1, -1]])")).find("-1 is out of range"),
+            std::string::npos);
   EXPECT_NE(refusal(mesh_members(positions + R"("faces": [[0, 1]])")).find("3 or more indices, not an array of 2"),
             std::string::npos);
   EXPECT_NE(refusal(mesh_members(positions + R"("faces": [[0, 1, 1.5]])")).find("whole number"), std::string::npos);
@@ -422,9 +426,11 @@ TEST(SetSceneValue, NamesWithDotsAreMatchedLongestFirstOrQuoted) {
 TEST(SetSceneValue, RefusalsNameThePathAndTheChoices) {
   EXPECT_EQ(set_refusal("materials.glas.diffuse", "1"),
             "--set: materials: unknown material \"glas\"; known materials: glass, a.b, a (did you mean \"glass\"?)");
-  EXPECT_EQ(set_refusal("materials.glass.colour", "1").rfind("--set: materials.glass: unknown key \"colour\"; known keys: ", 0),
+  EXPECT_EQ(set_refusal("materials.glass.colour", "1")
+                .rfind("--set: materials.glass: unknown key \"colour\"; known keys: ", 0),
             0u);
-  EXPECT_EQ(set_refusal("rendr.depth", "1").rfind("--set: unknown key \"rendr\"; known keys: raytree, title, image", 0), 0u);
+  EXPECT_EQ(set_refusal("rendr.depth", "1").rfind("--set: unknown key \"rendr\"; known keys: raytree, title, image", 0),
+            0u);
   EXPECT_EQ(set_refusal("render.depth", "deep"), "--set: render.depth: expected a whole number, not \"deep\"");
   EXPECT_EQ(set_refusal("render.depth", "0"),
             "--set: render.depth: 0 is out of range: must be at least 1 and at most 1000000");
@@ -432,8 +438,9 @@ TEST(SetSceneValue, RefusalsNameThePathAndTheChoices) {
   EXPECT_EQ(set_refusal("background.color", "1"),
             "--set: background: unknown key \"color\"; known keys: type, bottom, horizon, top");
   EXPECT_NE(set_refusal("background.type", "sky").find("known types: constant, gradient"), std::string::npos);
-  EXPECT_NE(set_refusal("shapes.ball.material", "gold").find("unknown material \"gold\"; materials of this scene: glass"),
-            std::string::npos);
+  EXPECT_NE(
+      set_refusal("shapes.ball.material", "gold").find("unknown material \"gold\"; materials of this scene: glass"),
+      std::string::npos);
   EXPECT_NE(set_refusal("ambient[3]", "1").find("they are [0] to [2]"), std::string::npos);
   EXPECT_NE(set_refusal("ambient[-1]", "1").find("they are [0] to [2]"), std::string::npos);
   EXPECT_NE(set_refusal("ambient[1", "1").find("they are [0] to [2]"), std::string::npos);
@@ -442,9 +449,10 @@ TEST(SetSceneValue, RefusalsNameThePathAndTheChoices) {
   EXPECT_NE(set_refusal("shapes.floor.faces", "[[0, 1, 9]]").find("index 9 is out of range"), std::string::npos);
   EXPECT_NE(set_refusal("shapes.file.faces", "[[0, 1, 2]]").find("comes from a file"), std::string::npos);
   EXPECT_NE(set_refusal("materials.glass.ambient.size", "1").find("set it as a whole first"), std::string::npos);
-  EXPECT_NE(set_refusal("materials.glass.diffuse.size", "1").find("set \"type\" to \"checker\" first"), std::string::npos);
-  for (const char* path : {"", ".", "..", "[", "[0]", "materials", "materials.", "materials..x", "\"", "shapes.\"", "render.",
-                           "lights.sun.type.x", "image[0]"})
+  EXPECT_NE(set_refusal("materials.glass.diffuse.size", "1").find("set \"type\" to \"checker\" first"),
+            std::string::npos);
+  for (const char* path : {"", ".", "..", "[", "[0]", "materials", "materials.", "materials..x", "\"", "shapes.\"",
+                           "render.", "lights.sun.type.x", "image[0]"})
     EXPECT_NE(set_refusal(path, "1"), "accepted") << path;
 }
 
@@ -485,7 +493,8 @@ class Randomizer {
     const std::size_t corners = triangles ? 9 : 13;
     const auto indices = [&](std::size_t count) {
       Buffer<std::uint32_t> list;
-      for (std::size_t i = 0; i < corners; ++i) list.push_back(static_cast<std::uint32_t>(whole(0, static_cast<int>(count) - 1)));
+      for (std::size_t i = 0; i < corners; ++i)
+        list.push_back(static_cast<std::uint32_t>(whole(0, static_cast<int>(count) - 1)));
       return list;
     };
     mesh.corners = indices(vertices);
@@ -506,7 +515,7 @@ class Randomizer {
   int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
   double number(const Range& range = {}) {
     const double low = std::max(range.low, -1e3), high = std::min(range.high, 1e3);
-    return std::uniform_real_distribution<double>(low, high)(random_) + (range.low_open && low == 0 ? 1e-3 : 0) * 0;
+    return std::uniform_real_distribution<double>(low, high)(random_);
   }
   float float_number(const Range& range = {}) { return static_cast<float>(number(range)); }
 
@@ -522,7 +531,7 @@ class Randomizer {
   }
   void fill(const Field&, SceneVersion&) {}
   template <class E>
-    requires std::is_enum_v<E>
+  requires std::is_enum_v<E>
   void fill(const Field&, E& x) {
     const auto& entries = EnumTable<E>::entries;
     x = entries[static_cast<std::size_t>(whole(0, static_cast<int>(entries.size()) - 1))].value;
@@ -584,7 +593,8 @@ TEST(WriteScene, ReadsBackEqual) {
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
       ShapeDescription& shape = scene.shapes[i];
       shape.material = i == 0 ? "" : scene.materials.at(i).name;
-      if (auto* mesh = std::get_if<MeshShape>(&shape.kind); mesh && mesh->file.empty() && !mesh->mesh) mesh->file = "x.ply";
+      if (auto* mesh = std::get_if<MeshShape>(&shape.kind); mesh && mesh->file.empty() && !mesh->mesh)
+        mesh->file = "x.ply";
     }
     const std::string text = write_scene(scene);
     try {
@@ -606,20 +616,22 @@ TEST(WriteScene, NumbersAreTheShortestThatReadBack) {
   EXPECT_NE(text.find("\"cutoff\": 0.1,"), std::string::npos) << text;
 }
 
-// Every member of every struct stands in a table, apart from those that a file gives in another way. The structured bindings
-// of scene_equality.h stop compiling when a member is added; these counts then say whether its table knows it.
+/// How many keys a table holds.
+struct Counter {
+  int count = 0;
+  void operator()(const Field& field, const auto&) {
+    EXPECT_FALSE(field.key.empty());
+    EXPECT_FALSE(field.text.empty()) << field.key;
+    EXPECT_FALSE(field.text.ends_with('.')) << field.key;
+    ++count;
+  }
+  void tagged(const Field&, const auto&) { ++count; }
+  void inlined(const MeshShape&) { ++count; }
+};
+
+// Every member of every struct stands in a table, apart from those that a file gives in another way. The structured
+// bindings of scene_equality.h stop compiling when a member is added; these counts then say whether its table knows it.
 TEST(SceneFields, TablesHoldEveryMember) {
-  struct Counter {
-    int count = 0;
-    void operator()(const Field& field, const auto&) {
-      EXPECT_FALSE(field.key.empty());
-      EXPECT_FALSE(field.text.empty()) << field.key;
-      EXPECT_FALSE(field.text.ends_with('.')) << field.key;
-      ++count;
-    }
-    void tagged(const Field&, const auto&) { ++count; }
-    void inlined(const MeshShape&) { ++count; }
-  };
   const auto count = [](const auto& object) {
     Counter counter;
     visit_fields(counter, object);
