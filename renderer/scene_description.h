@@ -103,6 +103,8 @@ struct MaterialDescription {
   Rgb reflection{0, 0, 0};           ///< k_s
   Rgb transmission{0, 0, 0};         ///< k_t
   double index_of_refraction = 1.5;  ///< of the inside over the outside, > 0
+  /// Whether k_s and k_t follow Fresnel by angle; default: as RenderSettings::fresnel says.
+  std::optional<bool> fresnel;
 };
 
 // --- shapes -------------------------------------------------------------------------------------------------

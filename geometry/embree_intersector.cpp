@@ -1,0 +1,274 @@
+#include "geometry/embree_intersector.h"
+
+#include <cstring>
+#include <limits>
+
+#include "geometry/embree_state.h"
+#include "geometry/error.h"
+#include "geometry/plane_intersection.h"
+
+namespace raytree {
+namespace {
+
+using embree::Query;
+
+template <int Width>
+struct PacketTypes;
+template <>
+struct PacketTypes<8> {
+  using RayHit = RTCRayHit8;
+  using Ray = RTCRay8;
+};
+template <>
+struct PacketTypes<4> {
+  using RayHit = RTCRayHit4;
+  using Ray = RTCRay4;
+};
+
+template <int Width>
+void copy_lanes(void* to, const void* from) {
+  std::memcpy(to, from, Width * 4);
+}
+
+/// Fills a packet from rays [first, first + Width) and says which lanes are live: inside the batch, finite, with a
+/// direction and an end that is not behind the origin. (Debian's Embree 3 aborts the process on a NaN.)
+template <int Width, class Ray>
+void load_rays(const RayBatch& rays, std::size_t first, const float* max_distance, Ray& ray, int* valid) {
+  copy_lanes<Width>(ray.org_x, rays.origin_x + first);
+  copy_lanes<Width>(ray.org_y, rays.origin_y + first);
+  copy_lanes<Width>(ray.org_z, rays.origin_z + first);
+  copy_lanes<Width>(ray.dir_x, rays.direction_x + first);
+  copy_lanes<Width>(ray.dir_y, rays.direction_y + first);
+  copy_lanes<Width>(ray.dir_z, rays.direction_z + first);
+  copy_lanes<Width>(ray.tfar, max_distance + first);
+  const int live = static_cast<int>(std::min<std::size_t>(Width, rays.size - first));
+  for (int i = 0; i < Width; ++i) {
+    ray.tnear[i] = 0;
+    ray.time[i] = 0;
+    ray.mask[i] = 0xffffffffu;
+    ray.id[i] = 0;
+    ray.flags[i] = 0;
+    // x * 0 is 0 for finite x and NaN else; one sum tells for all six.
+    const float poison =
+        ray.org_x[i] * 0 + ray.org_y[i] * 0 + ray.org_z[i] * 0 + ray.dir_x[i] * 0 + ray.dir_y[i] * 0 + ray.dir_z[i] * 0;
+    const bool directed = (ray.dir_x[i] != 0) | (ray.dir_y[i] != 0) | (ray.dir_z[i] != 0);
+    valid[i] = ((poison == 0) & directed & (ray.tfar[i] >= 0) & (i < live)) ? -1 : 0;
+  }
+}
+
+template <int Width>
+void intersect_packets(RTCScene scene, const RayBatch& rays, bool coherent, const float* max_distance,
+                       HitBatch& hits) noexcept {
+  Query query(coherent);
+  alignas(64) int valid[Width];
+  typename PacketTypes<Width>::RayHit packet;
+  for (std::size_t first = 0; first < rays.size; first += Width) {
+    load_rays<Width>(rays, first, max_distance, packet.ray, valid);
+    for (int i = 0; i < Width; ++i) {
+      packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    query.intersect(scene, valid, packet);
+    copy_lanes<Width>(hits.geometry + first, packet.hit.geomID);
+    copy_lanes<Width>(hits.primitive + first, packet.hit.primID);
+    copy_lanes<Width>(hits.u + first, packet.hit.u);
+    copy_lanes<Width>(hits.v + first, packet.hit.v);
+    copy_lanes<Width>(hits.distance + first, packet.ray.tfar);
+  }
+}
+
+template <int Width>
+void occluded_packets(RTCScene scene, const RayBatch& rays, bool coherent, std::uint8_t* occluded) noexcept {
+  Query query(coherent);
+  alignas(64) int valid[Width];
+  typename PacketTypes<Width>::Ray packet;
+  for (std::size_t first = 0; first < rays.size; first += Width) {
+    load_rays<Width>(rays, first, rays.max_distance, packet, valid);
+    query.occluded(scene, valid, packet);
+    // Embree marks an occluded ray by tfar = -infinity; a lane that was not live counts as open.
+    for (int i = 0; i < Width; ++i) occluded[first + i] = (packet.tfar[i] < 0) & (valid[i] != 0);
+  }
+}
+
+bool finite_ray(const Vec3f& origin, const Vec3f& direction, float max_distance) {
+  return std::isfinite(origin.x + origin.y + origin.z) && std::isfinite(direction.x + direction.y + direction.z) &&
+         direction != Vec3f(0, 0, 0) && max_distance >= 0;
+}
+
+RTCRay single_ray(const Vec3f& origin, const Vec3f& direction, float max_distance) {
+  RTCRay ray;
+  ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
+  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+  ray.tnear = 0, ray.tfar = max_distance, ray.time = 0;
+  ray.mask = 0xffffffffu, ray.id = 0, ray.flags = 0;
+  return ray;
+}
+
+RTCBuildQuality embree_quality(EmbreeOptions::Quality quality) {
+  if (quality == EmbreeOptions::Quality::low) return RTC_BUILD_QUALITY_LOW;
+  return quality == EmbreeOptions::Quality::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
+}
+
+}  // namespace
+
+EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions& options)
+    : state_(std::make_unique<State>()) {
+  State& state = *state_;
+  state.shapes = &shapes;
+  const std::string config = options.threads > 0 ? "threads=" + std::to_string(options.threads) : std::string();
+  state.device.reset(rtcNewDevice(config.c_str()));
+  if (!state.device) throw Error(ErrorKind::failure, {}, "Embree does not start on this processor");
+  RTCDevice device = state.device.get();
+
+  rtcSetDeviceErrorFunction(
+      device,
+      [](void* user, RTCError, const char* text) {
+        auto& s = *static_cast<State*>(user);
+        std::lock_guard lock(s.error_mutex);
+        if (s.error.empty()) s.error = text;
+      },
+      &state);
+  rtcSetDeviceMemoryMonitorFunction(
+      device,
+      [](void* user, ssize_t bytes, bool) {
+        auto& s = *static_cast<State*>(user);
+        const std::ptrdiff_t now = s.memory.fetch_add(bytes, std::memory_order_relaxed) + bytes;
+        std::ptrdiff_t peak = s.peak_memory.load(std::memory_order_relaxed);
+        while (now > peak && !s.peak_memory.compare_exchange_weak(peak, now, std::memory_order_relaxed)) {
+        }
+        return true;
+      },
+      &state);
+  state.wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
+
+  state.scene.reset(rtcNewScene(device));
+  RTCScene scene = state.scene.get();
+  int flags = RTC_SCENE_FLAG_NONE;
+  if (options.robust) flags |= RTC_SCENE_FLAG_ROBUST;
+  if (options.compact) flags |= RTC_SCENE_FLAG_COMPACT;
+  rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(flags));
+  rtcSetSceneBuildQuality(scene, embree_quality(options.quality));
+
+  const auto attach = [&](RTCGeometryType type, GeometryId id, auto&& set_buffers) {
+    embree::Geometry geometry(rtcNewGeometry(device, type));
+    if (!geometry) return;
+    rtcSetGeometryMask(geometry.get(), 0xffffffffu);  // Embree 4's default meets no ray mask
+    rtcSetGeometryBuildQuality(geometry.get(), embree_quality(options.quality));
+    set_buffers(geometry.get());
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(scene, geometry.get(), id);
+  };
+  // Embree writes to none of the buffers that it shares.
+  const auto share = [](RTCGeometry geometry, RTCBufferType type, RTCFormat format, const auto& array,
+                        std::size_t stride, std::size_t count) {
+    rtcSetSharedGeometryBuffer(geometry, type, 0, format, array.data(), 0, stride, count);
+  };
+
+  if (const SphereArray& spheres = shapes.spheres; !spheres.center_radius.empty())
+    attach(RTC_GEOMETRY_TYPE_SPHERE_POINT, kSphereGeometry, [&](RTCGeometry geometry) {
+      share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres.center_radius, 16,
+            spheres.center_radius.size());
+    });
+  if (const DiscArray& discs = shapes.discs; !discs.center_radius.empty())
+    attach(RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT, kDiscGeometry, [&](RTCGeometry geometry) {
+      share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, discs.center_radius, 16, discs.center_radius.size());
+      share(geometry, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, discs.normal, sizeof(Vec3f), discs.normal.size());
+    });
+  for (std::size_t i = 0; i < shapes.meshes.size(); ++i) {
+    const TriangleMesh& mesh = shapes.meshes[i].mesh;
+    if (mesh.corners.empty()) continue;
+    attach(RTC_GEOMETRY_TYPE_TRIANGLE, kFirstMeshGeometry + static_cast<GeometryId>(i), [&](RTCGeometry geometry) {
+      share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions, sizeof(Vec3f), mesh.positions.size());
+      share(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.corners, 12, mesh.triangle_count());
+    });
+  }
+  if (options.stop != nullptr)
+    rtcSetSceneProgressMonitorFunction(
+        scene, [](void* stop, double) { return !static_cast<const std::atomic<bool>*>(stop)->load(); },
+        const_cast<std::atomic<bool>*>(options.stop));
+  rtcCommitScene(scene);
+
+  if (options.stop != nullptr && options.stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
+  std::lock_guard lock(state.error_mutex);
+  if (!state.error.empty()) throw Error(ErrorKind::failure, {}, "Embree: " + state.error);
+}
+
+EmbreeIntersector::~EmbreeIntersector() = default;
+
+void EmbreeIntersector::intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept {
+  // Planes first: Embree then looks no further than they are.
+  const std::vector<Plane>& planes = state_->shapes->planes;
+  const bool coherent = coherence == Coherence::coherent;
+  if (planes.empty()) {
+    if (state_->wide)
+      intersect_packets<8>(state_->scene.get(), rays, coherent, rays.max_distance, hits);
+    else
+      intersect_packets<4>(state_->scene.get(), rays, coherent, rays.max_distance, hits);
+    return;
+  }
+  thread_local PlaneHits plane_hits;
+  intersect_planes(planes, rays, plane_hits);
+  if (state_->wide)
+    intersect_packets<8>(state_->scene.get(), rays, coherent, plane_hits.distance.data(), hits);
+  else
+    intersect_packets<4>(state_->scene.get(), rays, coherent, plane_hits.distance.data(), hits);
+  for (std::size_t i = 0; i < rays.size; ++i)
+    if (hits.geometry[i] == kNoGeometry && plane_hits.plane[i] != kNoPlane)
+      hits.set(i, {kPlaneGeometry, plane_hits.plane[i], 0, 0, plane_hits.distance[i]});
+}
+
+void EmbreeIntersector::occluded(const RayBatch& rays, Coherence coherence, std::uint8_t* occluded) const noexcept {
+  const bool coherent = coherence == Coherence::coherent;
+  if (state_->wide)
+    occluded_packets<8>(state_->scene.get(), rays, coherent, occluded);
+  else
+    occluded_packets<4>(state_->scene.get(), rays, coherent, occluded);
+  const std::vector<Plane>& planes = state_->shapes->planes;
+  if (planes.empty()) return;
+  thread_local PlaneHits plane_hits;
+  intersect_planes(planes, rays, plane_hits);
+  for (std::size_t i = 0; i < rays.size; ++i) occluded[i] |= plane_hits.plane[i] != kNoPlane;
+}
+
+Hit EmbreeIntersector::intersect_one(const Vec3f& origin, const Vec3f& direction, float max_distance) const noexcept {
+  Hit nearest;
+  nearest.distance = max_distance;
+  if (!finite_ray(origin, direction, max_distance)) return nearest;
+  for (std::size_t i = 0; i < state_->shapes->planes.size(); ++i) {
+    const float distance = plane_distance(state_->shapes->planes[i], origin, direction);
+    if (distance >= 0 && distance < nearest.distance)
+      nearest = {kPlaneGeometry, static_cast<std::uint32_t>(i), 0, 0, distance};
+  }
+  Query query(false);
+  RTCRayHit ray;
+  ray.ray = single_ray(origin, direction, nearest.distance);
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  query.intersect(state_->scene.get(), ray);
+  if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID)
+    nearest = {ray.hit.geomID, ray.hit.primID, ray.hit.u, ray.hit.v, ray.ray.tfar};
+  return nearest;
+}
+
+bool EmbreeIntersector::occluded_one(const Vec3f& origin, const Vec3f& direction, float max_distance) const noexcept {
+  if (!finite_ray(origin, direction, max_distance)) return false;
+  for (const Plane& plane : state_->shapes->planes) {
+    const float distance = plane_distance(plane, origin, direction);
+    if (distance >= 0 && distance < max_distance) return true;
+  }
+  Query query(false);
+  RTCRay ray = single_ray(origin, direction, max_distance);
+  query.occluded(state_->scene.get(), ray);
+  return ray.tfar < 0;
+}
+
+std::size_t EmbreeIntersector::memory_bytes() const noexcept {
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->memory.load()));
+}
+std::size_t EmbreeIntersector::peak_memory_bytes() const noexcept {
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->peak_memory.load()));
+}
+
+std::string EmbreeIntersector::version() { return "Embree " RTC_VERSION_STRING; }
+
+}  // namespace raytree

@@ -1,0 +1,48 @@
+// The fast tracer: Embree behind the seam. No Embree type is seen outside embree_*.cpp.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "geometry/ray_intersector.h"
+#include "geometry/shape_set.h"
+
+namespace raytree {
+
+struct EmbreeOptions {
+  enum class Quality { low, medium, high };
+  int threads = 0;       ///< of the build; 0: all of the arena
+  bool robust = true;    ///< watertight edges at .85-.91 of the speed
+  bool compact = false;  ///< half the memory at .6 of the speed
+  Quality quality = Quality::medium;
+  const std::atomic<bool>* stop = nullptr;  ///< ends the build early
+};
+
+class EmbreeIntersector final : public RayIntersector {
+ public:
+  /// Builds over shapes, which must outlive it: meshes and spheres are shared, not copied. Every index must be in range
+  /// and every number finite. Throws Error (failure) with Embree's word, or "interrupted".
+  EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions& options);
+  ~EmbreeIntersector() override;
+
+  void intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept override;
+  void occluded(const RayBatch& rays, Coherence coherence, std::uint8_t* occluded) const noexcept override;
+  std::size_t memory_bytes() const noexcept override;
+  std::size_t peak_memory_bytes() const noexcept override;
+
+  /// One ray by Embree's single-ray calls: for recursion, which benchmarks compare with.
+  Hit intersect_one(const Vec3f& origin, const Vec3f& direction, float max_distance) const noexcept;
+  bool occluded_one(const Vec3f& origin, const Vec3f& direction, float max_distance) const noexcept;
+
+  /// e.g. "Embree 3.13.5".
+  static std::string version();
+
+ private:
+  friend class BareReplay;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace raytree

@@ -1,0 +1,43 @@
+#include "geometry/ray_batch.h"
+
+#include <cstring>
+
+namespace raytree {
+namespace detail {
+
+std::unique_ptr<std::byte[], AlignedDelete> batch_storage(std::size_t arrays, std::size_t padded) {
+  const std::size_t bytes = arrays * padded * 4;
+  auto* block = static_cast<std::byte*>(::operator new[](bytes, std::align_val_t(kBatchAlignment)));
+  std::memset(block, 0, bytes);
+  return std::unique_ptr<std::byte[], AlignedDelete>(block);
+}
+
+}  // namespace detail
+
+namespace {
+
+std::size_t padded_capacity(std::size_t capacity) { return (capacity / kBatchPadding + 1) * kBatchPadding; }
+
+}  // namespace
+
+RayBatch::RayBatch(std::size_t capacity)
+    : capacity_(capacity), storage_(detail::batch_storage(7, padded_capacity(capacity))) {
+  auto* next = reinterpret_cast<float*>(storage_.get());
+  for (float** array : {&origin_x, &origin_y, &origin_z, &direction_x, &direction_y, &direction_z, &max_distance}) {
+    *array = next;
+    next += padded_capacity(capacity);
+  }
+}
+
+HitBatch::HitBatch(std::size_t capacity)
+    : capacity_(capacity), storage_(detail::batch_storage(5, padded_capacity(capacity))) {
+  const std::size_t padded = padded_capacity(capacity);
+  auto* block = reinterpret_cast<std::uint32_t*>(storage_.get());
+  geometry = block;
+  primitive = block + padded;
+  u = reinterpret_cast<float*>(block + 2 * padded);
+  v = reinterpret_cast<float*>(block + 3 * padded);
+  distance = reinterpret_cast<float*>(block + 4 * padded);
+}
+
+}  // namespace raytree

@@ -1,0 +1,89 @@
+// Batches of rays and of hits, structure of arrays: what flows through the seam (ray_intersector.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <new>
+
+#include "geometry/vec.h"
+
+namespace raytree {
+
+inline constexpr std::size_t kBatchAlignment = 64;  ///< bytes; every array of a batch begins on such a border
+inline constexpr std::size_t kBatchPadding = 16;    ///< a batch may be read in full packets of up to so many rays
+
+namespace detail {
+struct AlignedDelete {
+  void operator()(std::byte* block) const { ::operator delete[](block, std::align_val_t(kBatchAlignment)); }
+};
+/// Zeroed storage of `arrays` arrays of `padded` 4-byte elements.
+std::unique_ptr<std::byte[], AlignedDelete> batch_storage(std::size_t arrays, std::size_t padded);
+}  // namespace detail
+
+/// Rays, scene space (world relative to the scene's origin). Each starts at its origin (no least distance: origins are
+/// offset from the surface they leave) and ends at max_distance, infinity for none. Directions are unit.
+class RayBatch {
+ public:
+  explicit RayBatch(std::size_t capacity);
+
+  std::size_t capacity() const { return capacity_; }
+
+  std::size_t size = 0;
+  float *origin_x, *origin_y, *origin_z;
+  float *direction_x, *direction_y, *direction_z;
+  float* max_distance;
+
+  void set(std::size_t i, const Vec3f& origin, const Vec3f& direction, float end) {
+    origin_x[i] = origin.x, origin_y[i] = origin.y, origin_z[i] = origin.z;
+    direction_x[i] = direction.x, direction_y[i] = direction.y, direction_z[i] = direction.z;
+    max_distance[i] = end;
+  }
+  void push(const Vec3f& origin, const Vec3f& direction, float end) { set(size++, origin, direction, end); }
+  Vec3f origin(std::size_t i) const { return {origin_x[i], origin_y[i], origin_z[i]}; }
+  Vec3f direction(std::size_t i) const { return {direction_x[i], direction_y[i], direction_z[i]}; }
+
+ private:
+  std::size_t capacity_;
+  std::unique_ptr<std::byte[], detail::AlignedDelete> storage_;
+};
+
+/// Which geometry a hit lies on. Spheres, discs and planes of a scene form one geometry each; meshes follow.
+using GeometryId = std::uint32_t;
+inline constexpr GeometryId kSphereGeometry = 0;
+inline constexpr GeometryId kDiscGeometry = 1;
+inline constexpr GeometryId kPlaneGeometry = 2;
+inline constexpr GeometryId kFirstMeshGeometry = 3;
+inline constexpr GeometryId kNoGeometry = std::numeric_limits<GeometryId>::max();
+
+struct Hit {
+  GeometryId geometry = kNoGeometry;
+  std::uint32_t primitive = 0;  ///< triangle, sphere, disc or plane of the geometry
+  float u = 0, v = 0;           ///< triangles: weights of corner 1 and corner 2; slightly outside [0, 1] at edges
+  float distance = 0;
+};
+
+/// Nearest hits, one per ray of the batch asked about. A miss has geometry kNoGeometry.
+class HitBatch {
+ public:
+  explicit HitBatch(std::size_t capacity);
+
+  std::size_t capacity() const { return capacity_; }
+
+  GeometryId* geometry;
+  std::uint32_t* primitive;
+  float *u, *v;
+  float* distance;
+
+  Hit operator[](std::size_t i) const { return {geometry[i], primitive[i], u[i], v[i], distance[i]}; }
+  void set(std::size_t i, const Hit& hit) {
+    geometry[i] = hit.geometry, primitive[i] = hit.primitive, u[i] = hit.u, v[i] = hit.v, distance[i] = hit.distance;
+  }
+
+ private:
+  std::size_t capacity_;
+  std::unique_ptr<std::byte[], detail::AlignedDelete> storage_;
+};
+
+}  // namespace raytree

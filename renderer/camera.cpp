@@ -1,0 +1,34 @@
+#include "renderer/camera.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "geometry/error.h"
+#include "geometry/surface.h"
+
+namespace raytree {
+
+Camera::Camera(const CameraDescription& description, int width, int height, const Vec3d& scene_origin,
+               const SourceLocation& where) {
+  const Vec3d view = description.target - description.position;
+  if (!(view.dot(view) > 0)) throw Error(ErrorKind::bad_input, where, "camera target and position are the same point");
+  const Vec3d forward = unit(view);
+  const Vec3d side = forward.cross(description.up);
+  if (!(side.dot(side) > 1e-24 * description.up.dot(description.up)))
+    throw Error(ErrorKind::bad_input, where, "camera looks along its up direction");
+  const Vec3d right = unit(side);
+  const Vec3d up = right.cross(forward);
+
+  perspective_ = description.projection == CameraDescription::Projection::perspective;
+  const double window_height =
+      perspective_ ? 2 * std::tan(description.field_of_view * std::numbers::pi / 360) : description.height;
+  const double pixel = window_height / height;
+  position_ = Vec3f(description.position - scene_origin);
+  forward_ = Vec3f(forward);
+  right_ = Vec3f(right * pixel);
+  up_ = Vec3f(up * pixel);
+  center_x_ = static_cast<float>(width) / 2;
+  center_y_ = static_cast<float>(height) / 2;
+}
+
+}  // namespace raytree

@@ -1,0 +1,41 @@
+// Eye rays: from a point of the image plane to a ray in scene space.
+#pragma once
+
+#include <cmath>
+
+#include "geometry/vec.h"
+#include "renderer/scene_description.h"
+
+namespace raytree {
+
+class Camera {
+ public:
+  Camera() = default;
+  /// For a frame of width x height square pixels. `scene_origin`: see ShapeSet::origin. Throws Error (bad_input) when
+  /// position, target and up do not span a view.
+  Camera(const CameraDescription& description, int width, int height, const Vec3d& scene_origin,
+         const SourceLocation& where);
+
+  /// The ray through image position (x, y) in pixels: (0, 0) is the frame's upper left corner, y downwards; pixel
+  /// centers lie at halves. Direction is unit.
+  void ray(float x, float y, Vec3f& origin, Vec3f& direction) const {
+    const float right = x - center_x_, up = center_y_ - y;
+    if (perspective_) {
+      const Vec3f through = forward_ + right_ * right + up_ * up;
+      origin = position_;
+      direction = through * (1 / std::sqrt(through.dot(through)));
+    } else {
+      origin = position_ + right_ * right + up_ * up;
+      direction = forward_;
+    }
+  }
+
+ private:
+  bool perspective_ = true;
+  Vec3f position_{0, 0, 0};             ///< scene space
+  Vec3f forward_{0, 0, -1};             ///< unit
+  Vec3f right_{1, 0, 0}, up_{0, 1, 0};  ///< per pixel
+  float center_x_ = 0, center_y_ = 0;
+};
+
+}  // namespace raytree

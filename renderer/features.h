@@ -1,0 +1,24 @@
+// Which optional parts of the renderer are compiled in. All of them, but in the variant that the benchmark `idle`
+// builds to show that a part which a scene does not use costs next to nothing.
+#pragma once
+
+namespace raytree {
+
+#ifdef RAYTREE_WITHOUT_OPTIONAL_FEATURES
+inline constexpr bool kOptionalFeatures = false;
+#else
+inline constexpr bool kOptionalFeatures = true;
+#endif
+
+struct Features {
+  bool distance_attenuation = kOptionalFeatures;
+  bool fresnel = kOptionalFeatures;
+  bool patterns = kOptionalFeatures;  ///< colors that vary over the surface
+  bool first_hit_channels = kOptionalFeatures;
+  bool ray_count_channel = kOptionalFeatures;
+  bool truncation_channel = kOptionalFeatures;
+  bool halfway_highlights = kOptionalFeatures;
+};
+inline constexpr Features kFeatures;
+
+}  // namespace raytree

@@ -1,0 +1,55 @@
+// Directions and weights of the reflected and the refracted ray: Whitted 1980, sec. 2, and Fresnel's equations.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "geometry/vec.h"
+
+namespace raytree {
+
+/// Mirror direction of `direction` (unit, V of Whitted 1980, toward the surface) about unit `normal` with V.N < 0.
+/// Whitted's R = V' + 2 N, V' = V / |V.N|, made unit.
+template <class Vec>
+Vec reflected_direction(const Vec& direction, const Vec& normal) {
+  return direction - normal * (2 * direction.dot(normal));
+}
+
+/// Refracted direction, unit; none at total internal reflection. `relative_index`: k_n, index of the side that the ray
+/// enters over that of the side it comes from, so sin t = sin i / k_n. Equals Whitted's P = k_f (N + V') - N made unit,
+/// without his division by V.N, which overflows at grazing incidence (tests/renderer/optics_test.cpp holds one to the
+/// other).
+template <class Vec>
+std::optional<Vec> refracted_direction(const Vec& direction, const Vec& normal, typename Vec::BaseType relative_index) {
+  using Real = typename Vec::BaseType;
+  const Real eta = 1 / relative_index;
+  const Real cos_i = -direction.dot(normal);
+  const Real sin_t_squared = eta * eta * std::max(Real(0), 1 - cos_i * cos_i);
+  if (sin_t_squared >= 1) return std::nullopt;
+  const Real cos_t = std::sqrt(1 - sin_t_squared);
+  const Vec refracted = direction * eta + normal * (eta * cos_i - cos_t);
+  return refracted * (1 / std::sqrt(refracted.dot(refracted)));
+}
+
+/// Share of unpolarized light that a dielectric surface reflects: the mean of R_s and R_p. cos_i in [0, 1]; 1 at total
+/// internal reflection. R_s = ((c_i - k c_t) / (c_i + k c_t))^2, R_p = ((k c_i - c_t) / (k c_i + c_t))^2, k =
+/// relative_index.
+template <class Real>
+Real fresnel_reflectance(Real cos_i, Real relative_index) {
+  const Real sin_t_squared = std::max(Real(0), 1 - cos_i * cos_i) / (relative_index * relative_index);
+  if (sin_t_squared >= 1) return 1;
+  const Real cos_t = std::sqrt(1 - sin_t_squared);
+  const Real s = (cos_i - relative_index * cos_t) / (cos_i + relative_index * cos_t);
+  const Real p = (relative_index * cos_i - cos_t) / (relative_index * cos_i + cos_t);
+  return (s * s + p * p) / 2;
+}
+
+/// A direction that must stay on `side`'s side of the surface (unit geometric normal): one that an interpolated normal
+/// sent to the other side is mirrored back. Continuous: at the surface's plane both agree.
+inline Vec3f kept_on_side(const Vec3f& direction, const Vec3f& side) {
+  const float height = direction.dot(side);
+  return height >= 0 ? direction : direction - side * (2 * height);
+}
+
+}  // namespace raytree

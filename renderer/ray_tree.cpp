@@ -1,0 +1,416 @@
+#include "renderer/ray_tree.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "renderer/features.h"
+#include "renderer/shading.h"
+
+namespace raytree {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// A ray of the tree that waits for its turn.
+struct PendingRay {
+  Vec3f origin;
+  float allowance;  ///< what may still be cut off below it, radiance
+  Vec3f direction;
+  std::uint32_t sample;      ///< in the chunk
+  Rgb weight;                ///< of what it brings in its sample
+  std::uint32_t level : 31;  ///< the eye ray is 1
+  std::uint32_t refracted : 1;
+};
+static_assert(sizeof(PendingRay) == 48);
+
+/// A hit of the batch under way, with the context of its ray.
+struct BatchPoint {
+  ShadingPoint shading;
+  Rgb weight;
+  float allowance;
+  std::uint32_t sample;
+  std::uint32_t level;
+};
+
+constexpr int kTilePixels = kTileSize * kTileSize;
+
+/// Eye samples are traced in blocks of so many along x and y, which makes a packet of eight.
+constexpr int kBlockWidth = 4, kBlockHeight = 2;
+
+}  // namespace
+
+struct TileTracer::State {
+  State(const Scene& scene_, const RenderOptions& options_, Film& film_)
+      : scene(scene_),
+        options(options_),
+        settings(scene_.description.render),
+        film(film_),
+        rays(kBatchSize),
+        hits(kBatchSize),
+        shadow_rays(kBatchSize),
+        occluded(kBatchSize + kBatchPadding),
+        shadow_samples(kBatchSize),
+        shadow_light(kBatchSize),
+        contexts(kBatchSize),
+        radiance(kBatchSize),
+        truncation(kBatchSize),
+        ray_counts(kBatchSize),
+        pixel_of_sample(kBatchSize),
+        center_of_pixel(kBatchSize) {
+    points.reserve(kBatchSize);
+    pending.reserve(4 * kBatchSize);
+    const ChannelSet& channels = options.channels;
+    counts_rays = channels.has(ChannelGroup::ray_count);
+    records_first_hit = channels.has(ChannelGroup::alpha) || channels.has(ChannelGroup::depth) ||
+                        channels.has(ChannelGroup::normal) || channels.has(ChannelGroup::object_id) ||
+                        channels.has(ChannelGroup::material_id) || channels.has(ChannelGroup::albedo);
+    records_truncation = channels.has(ChannelGroup::truncation);
+    for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
+    color_sum.resize(kTilePixels);
+    truncation_sum.resize(records_truncation ? kTilePixels : 0);
+    first_hits.resize(records_first_hit ? kTilePixels : 0);
+    ray_count_sum.resize(counts_rays ? kTilePixels : 0);
+  }
+
+  /// Sums over a pixel's samples of what its eye rays hit.
+  struct FirstHits {
+    double depth = 0, normal[3] = {0, 0, 0}, albedo[3] = {0, 0, 0};
+    std::uint32_t count = 0, object = 0, material = 0;
+  };
+
+  bool trace_tile(int x0, int y0);
+  void add_eye_sample(float x, float y, int pixel, bool center);
+  bool finish_chunk();
+  void trace_batch(Coherence coherence, bool eye);
+  void collect_hits(bool eye);
+  void add_ambient();
+  void add_lights();
+  void spawn();
+  void spawn_child(const BatchPoint& point, const Vec3f& direction, const Rgb& weight, float allowance, bool refracted);
+  void record_first_hit(const BatchPoint& point, const Hit& hit, ShapeId shape);
+  void resolve_tile(int x0, int y0, int samples_per_pixel);
+
+  const Scene& scene;
+  const RenderOptions& options;
+  const RenderSettings& settings;
+  Film& film;
+  RenderStatistics statistics;
+
+  RayBatch rays;
+  HitBatch hits;
+  RayBatch shadow_rays;
+  std::vector<std::uint8_t> occluded;
+  std::vector<std::uint32_t> shadow_samples;
+  std::vector<Rgb> shadow_light;  ///< what a shadow ray brings when nothing is in its way
+
+  std::vector<PendingRay> contexts;  ///< [rays.size] of the batch under way
+  std::vector<BatchPoint> points;    ///< hits of the batch under way
+  std::vector<PendingRay> pending;   ///< the newest rays are traced first
+
+  // The chunk of samples under way.
+  std::size_t chunk_size = 0;
+  std::vector<Rgb> radiance, truncation;
+  std::vector<std::uint32_t> ray_counts;
+  std::vector<std::uint16_t> pixel_of_sample;
+  std::vector<std::uint8_t> center_of_pixel;  ///< whether the sample stands for its pixel's ids
+
+  // The tile under way, [kTileSize][kTileSize].
+  struct ColorSum {
+    double r = 0, g = 0, b = 0;
+  };
+  std::vector<ColorSum> color_sum, truncation_sum;
+  std::vector<FirstHits> first_hits;
+  std::vector<std::uint32_t> ray_count_sum;
+
+  bool counts_rays = false, records_first_hit = false, records_truncation = false, wants_texture = false;
+};
+
+bool TileTracer::State::trace_tile(int x0, int y0) {
+  const auto start = Clock::now();
+  std::fill(color_sum.begin(), color_sum.end(), ColorSum());
+  std::fill(truncation_sum.begin(), truncation_sum.end(), ColorSum());
+  std::fill(first_hits.begin(), first_hits.end(), FirstHits());
+  std::fill(ray_count_sum.begin(), ray_count_sum.end(), 0u);
+
+  const int grid = settings.antialias.method == Antialiasing::Method::grid ? settings.antialias.grid_size : 1;
+  const int width = std::min(kTileSize, scene.description.image.width - x0) * grid;
+  const int height = std::min(kTileSize, scene.description.image.height - y0) * grid;
+  const float spacing = 1.0f / static_cast<float>(grid);
+  for (int block_y = 0; block_y < height; block_y += kBlockHeight)
+    for (int block_x = 0; block_x < width; block_x += kBlockWidth) {
+      if (chunk_size + kBlockWidth * kBlockHeight > kBatchSize && !finish_chunk()) return false;
+      for (int y = block_y; y < std::min(block_y + kBlockHeight, height); ++y)
+        for (int x = block_x; x < std::min(block_x + kBlockWidth, width); ++x) {
+          const int pixel_x = x / grid, pixel_y = y / grid;
+          const bool center = x - pixel_x * grid == grid / 2 && y - pixel_y * grid == grid / 2;
+          add_eye_sample(static_cast<float>(x0) + (static_cast<float>(x) + 0.5f) * spacing,
+                         static_cast<float>(y0) + (static_cast<float>(y) + 0.5f) * spacing,
+                         pixel_y * kTileSize + pixel_x, center);
+        }
+    }
+  if (!finish_chunk()) return false;
+  resolve_tile(x0, y0, grid * grid);
+  statistics.thread_seconds += seconds_since(start);
+  return true;
+}
+
+void TileTracer::State::add_eye_sample(float x, float y, int pixel, bool center) {
+  const std::size_t i = chunk_size++;
+  Vec3f origin, direction;
+  scene.camera.ray(x, y, origin, direction);
+  rays.set(i, origin, direction, std::numeric_limits<float>::infinity());
+  contexts[i] = {origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint32_t>(i), Rgb(1), 1, 0};
+  radiance[i] = truncation[i] = Rgb();
+  ray_counts[i] = 1;
+  pixel_of_sample[i] = static_cast<std::uint16_t>(pixel);
+  center_of_pixel[i] = center;
+}
+
+/// Traces the chunk's eye rays and all that grows from them, then adds the samples to their pixels. False: stopped.
+bool TileTracer::State::finish_chunk() {
+  rays.size = chunk_size;
+  statistics.rays[static_cast<int>(RayKind::primary)] += chunk_size;
+  statistics.samples += chunk_size;
+  trace_batch(Coherence::coherent, true);
+  while (!pending.empty()) {
+    if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) return false;
+    const std::size_t count = std::min(kBatchSize, pending.size());
+    const PendingRay* first = pending.data() + pending.size() - count;
+    for (std::size_t i = 0; i < count; ++i) {
+      const PendingRay& ray = contexts[i] = first[i];
+      rays.set(i, ray.origin, ray.direction, std::numeric_limits<float>::infinity());
+      if (counts_rays) ++ray_counts[ray.sample];
+    }
+    rays.size = count;
+    pending.resize(pending.size() - count);
+    trace_batch(Coherence::incoherent, false);
+  }
+  for (std::size_t i = 0; i < chunk_size; ++i) {
+    const int pixel = pixel_of_sample[i];
+    if (is_finite(radiance[i])) {
+      color_sum[pixel].r += radiance[i].r, color_sum[pixel].g += radiance[i].g, color_sum[pixel].b += radiance[i].b;
+    } else {
+      ++statistics.not_finite_samples;
+    }
+    if (records_truncation) {
+      ColorSum& sum = truncation_sum[pixel];
+      sum.r += truncation[i].r, sum.g += truncation[i].g, sum.b += truncation[i].b;
+    }
+    if (counts_rays) ray_count_sum[pixel] += ray_counts[i];
+  }
+  chunk_size = 0;
+  return !(options.stop != nullptr && options.stop->load(std::memory_order_relaxed));
+}
+
+void TileTracer::State::trace_batch(Coherence coherence, bool eye) {
+  const auto start = Clock::now();
+  scene.intersector->intersect(rays, coherence, hits);
+  const auto hit = Clock::now();
+  const double intersection_before = statistics.intersection_seconds;
+  collect_hits(eye);
+  add_ambient();
+  add_lights();
+  spawn();
+  const double shadow_seconds = statistics.intersection_seconds - intersection_before;
+  statistics.shading_seconds += seconds_since(hit) - shadow_seconds;
+  statistics.intersection_seconds += std::chrono::duration<double>(hit - start).count();
+}
+
+void TileTracer::State::collect_hits(bool eye) {
+  const ShapeSet& shapes = *scene.shapes;
+  points.clear();
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    const PendingRay& ray = contexts[i];
+    if (hits.geometry[i] == kNoGeometry) {
+      radiance[ray.sample] += ray.weight * scene.background.along(ray.direction);
+      continue;
+    }
+    const Hit hit = hits[i];
+    const SurfacePoint surface = surface_at(shapes, ray.origin, ray.direction, hit, wants_texture);
+    const ShapeId shape = shapes.shape_of(hit.geometry, hit.primitive);
+    const Material& material = scene.materials[scene.shape_materials[shape]];
+    BatchPoint& point = points.emplace_back(
+        BatchPoint{shading_point(surface, ray.direction, material), ray.weight, ray.allowance, ray.sample, ray.level});
+    if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && !eye)
+      point.weight *= segment_attenuation(static_cast<float>(settings.distance_attenuation), surface.distance);
+    if (eye && records_first_hit) record_first_hit(point, hit, shape);
+  }
+}
+
+void TileTracer::State::add_ambient() {
+  if (is_black(scene.ambient)) return;
+  for (const BatchPoint& point : points)
+    radiance[point.sample] += point.weight * scene.ambient * point.shading.material->ambient.at(point.shading.surface);
+}
+
+void TileTracer::State::add_lights() {
+  for (const Light& light : scene.lights) {
+    std::size_t count = 0;
+    for (const BatchPoint& point : points) {
+      const Material& material = *point.shading.material;
+      if (!material.has_diffuse && !material.has_highlight) continue;
+      const LocalLight local = local_light(point.shading, light, settings.highlights);
+      if (!local.lit) continue;
+      Rgb shadowed = local.diffuse;
+      if (settings.shadowed_highlights)
+        shadowed += local.highlight;
+      else
+        radiance[point.sample] += point.weight * local.highlight;
+      if (is_black(shadowed)) continue;
+      if (!settings.shadows) {
+        radiance[point.sample] += point.weight * shadowed;
+        continue;
+      }
+      const Vec3f origin = offset_origin(point.shading.surface, point.shading.surface.geometric_normal);
+      shadow_rays.set(count, origin, local.direction, local.distance);
+      shadow_samples[count] = point.sample;
+      shadow_light[count] = point.weight * shadowed;
+      ++count;
+    }
+    if (count == 0) continue;
+    shadow_rays.size = count;
+    const auto start = Clock::now();
+    scene.intersector->occluded(shadow_rays, Coherence::coherent, occluded.data());
+    statistics.intersection_seconds += seconds_since(start);
+    statistics.rays[static_cast<int>(RayKind::shadow)] += count;
+    for (std::size_t i = 0; i < count; ++i)
+      if (!occluded[i]) radiance[shadow_samples[i]] += shadow_light[i];
+    if (counts_rays)
+      for (std::size_t i = 0; i < count; ++i) ++ray_counts[shadow_samples[i]];
+  }
+}
+
+void TileTracer::State::spawn() {
+  for (const BatchPoint& point : points) {
+    const Material& material = *point.shading.material;
+    if (!material.has_reflection && !material.has_transmission) continue;
+    const Branches children = branches(point.shading);
+    Rgb weights[2] = {point.weight * children.reflected_weight, point.weight * children.refracted_weight};
+    const bool alive[2] = {!is_black(weights[0]), !is_black(weights[1])};
+    if (static_cast<int>(point.level) >= settings.depth) {
+      statistics.branches_at_depth_limit += alive[0] + alive[1];
+      continue;
+    }
+    // The allowance is divided over the children; the child with the smaller bound is judged first, and what it leaves
+    // of its share passes to the other.
+    const Rgb below = scene.bound(settings.depth - static_cast<int>(point.level) - 1);
+    const Rgb bounds[2] = {weights[0] * below, weights[1] * below};
+    float allowance = point.allowance;
+    float shares[2] = {allowance, allowance};
+    bool cut[2] = {false, false};
+    if (alive[0] && alive[1]) {
+      const int smaller = max_channel(bounds[0]) <= max_channel(bounds[1]) ? 0 : 1;
+      const float half = allowance / 2;
+      const float cost = max_channel(bounds[smaller]);
+      cut[smaller] = cost <= half;
+      shares[smaller] = half;
+      shares[1 - smaller] = cut[smaller] ? allowance - cost : half;
+      cut[1 - smaller] = max_channel(bounds[1 - smaller]) <= shares[1 - smaller];
+    } else {
+      for (int i = 0; i < 2; ++i) cut[i] = max_channel(bounds[i]) <= allowance;
+    }
+    for (int i = 0; i < 2; ++i) {
+      if (!alive[i]) continue;
+      if (cut[i]) {
+        truncation[point.sample] += bounds[i];
+        ++statistics.branches_cut;
+      } else {
+        spawn_child(point, i == 0 ? children.reflected : children.refracted, weights[i], shares[i], i == 1);
+      }
+    }
+  }
+}
+
+void TileTracer::State::spawn_child(const BatchPoint& point, const Vec3f& direction, const Rgb& weight, float allowance,
+                                    bool refracted) {
+  const SurfacePoint& surface = point.shading.surface;
+  const Vec3f side = refracted ? -surface.geometric_normal : surface.geometric_normal;
+  pending.push_back({offset_origin(surface, side), allowance, direction, point.sample, weight,
+                     (point.level + 1) & 0x7fffffffu, refracted});
+  ++statistics.rays[static_cast<int>(refracted ? RayKind::refracted : RayKind::reflected)];
+  statistics.deepest_level = std::max(statistics.deepest_level, static_cast<int>(point.level) + 1);
+}
+
+void TileTracer::State::record_first_hit(const BatchPoint& point, const Hit&, ShapeId shape) {
+  FirstHits& first = first_hits[pixel_of_sample[point.sample]];
+  const SurfacePoint& surface = point.shading.surface;
+  ++first.count;
+  first.depth += surface.distance;
+  for (int i = 0; i < 3; ++i) first.normal[i] += surface.shading_normal[i];
+  first.albedo[0] += point.shading.diffuse.r;
+  first.albedo[1] += point.shading.diffuse.g;
+  first.albedo[2] += point.shading.diffuse.b;
+  if (center_of_pixel[point.sample]) {
+    first.object = shape + 1;
+    first.material = scene.shape_materials[shape] + 1;
+  }
+}
+
+void TileTracer::State::resolve_tile(int x0, int y0, int samples_per_pixel) {
+  const PixelWindow& window = film.window();
+  const int left = std::max(x0, window.x0), right = std::min(x0 + kTileSize, window.x0 + window.width);
+  const int top = std::max(y0, window.y0), bottom = std::min(y0 + kTileSize, window.y0 + window.height);
+  const double scale = 1.0 / samples_per_pixel;
+  const auto write = [&](ChannelGroup group, int plane, auto&& value) {
+    float* pixels = film.plane(group, plane);
+    for (int y = top; y < bottom; ++y)
+      for (int x = left; x < right; ++x)
+        pixels[static_cast<std::size_t>(y - window.y0) * window.width + (x - window.x0)] =
+            static_cast<float>(value((y - y0) * kTileSize + (x - x0)));
+  };
+  const auto write_ids = [&](ChannelGroup group, auto&& value) {
+    std::uint32_t* pixels = film.id_plane(group);
+    for (int y = top; y < bottom; ++y)
+      for (int x = left; x < right; ++x)
+        pixels[static_cast<std::size_t>(y - window.y0) * window.width + (x - window.x0)] =
+            value((y - y0) * kTileSize + (x - x0));
+  };
+  const ChannelSet& channels = film.channels();
+  if (channels.has(ChannelGroup::color)) {
+    write(ChannelGroup::color, 0, [&](int i) { return color_sum[i].r * scale; });
+    write(ChannelGroup::color, 1, [&](int i) { return color_sum[i].g * scale; });
+    write(ChannelGroup::color, 2, [&](int i) { return color_sum[i].b * scale; });
+  }
+  if (channels.has(ChannelGroup::truncation)) {
+    write(ChannelGroup::truncation, 0, [&](int i) { return truncation_sum[i].r * scale; });
+    write(ChannelGroup::truncation, 1, [&](int i) { return truncation_sum[i].g * scale; });
+    write(ChannelGroup::truncation, 2, [&](int i) { return truncation_sum[i].b * scale; });
+  }
+  if (channels.has(ChannelGroup::alpha))
+    write(ChannelGroup::alpha, 0, [&](int i) { return first_hits[i].count * scale; });
+  if (channels.has(ChannelGroup::depth))
+    write(ChannelGroup::depth, 0, [&](int i) {
+      return first_hits[i].count > 0 ? first_hits[i].depth / first_hits[i].count
+                                     : std::numeric_limits<double>::infinity();
+    });
+  if (channels.has(ChannelGroup::normal))
+    for (int axis = 0; axis < 3; ++axis)
+      write(ChannelGroup::normal, axis, [&](int i) {
+        const double* n = first_hits[i].normal;
+        const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        return length > 0 ? n[axis] / length : 0.0;
+      });
+  if (channels.has(ChannelGroup::albedo))
+    for (int c = 0; c < 3; ++c)
+      write(ChannelGroup::albedo, c,
+            [&](int i) { return first_hits[i].count > 0 ? first_hits[i].albedo[c] / first_hits[i].count : 0.0; });
+  if (channels.has(ChannelGroup::object_id))
+    write_ids(ChannelGroup::object_id, [&](int i) { return first_hits[i].object; });
+  if (channels.has(ChannelGroup::material_id))
+    write_ids(ChannelGroup::material_id, [&](int i) { return first_hits[i].material; });
+  if (channels.has(ChannelGroup::ray_count))
+    write_ids(ChannelGroup::ray_count, [&](int i) { return ray_count_sum[i]; });
+}
+
+TileTracer::TileTracer(const Scene& scene, const RenderOptions& options, Film& film)
+    : state_(std::make_unique<State>(scene, options, film)) {}
+TileTracer::~TileTracer() = default;
+TileTracer::TileTracer(TileTracer&&) noexcept = default;
+
+bool TileTracer::trace(int x0, int y0) { return state_->trace_tile(x0, y0); }
+const RenderStatistics& TileTracer::statistics() const { return state_->statistics; }
+
+}  // namespace raytree

@@ -1,0 +1,143 @@
+#include "renderer/scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "geometry/embree_intersector.h"
+#include "geometry/open_edges.h"
+#include "renderer/shape_assembly.h"
+
+namespace raytree {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+const CameraDescription& chosen_camera(const SceneDescription& scene, const std::string& name) {
+  static const CameraDescription fallback;
+  if (name.empty()) return scene.cameras.empty() ? fallback : scene.cameras.front();
+  std::string choices;
+  for (const CameraDescription& camera : scene.cameras) {
+    if (camera.name == name) return camera;
+    choices += (choices.empty() ? "" : ", ") + camera.name;
+  }
+  throw Error(ErrorKind::bad_input, {scene.name, 0, "cameras"}, "no camera \"" + name + "\"; cameras: " + choices);
+}
+
+/// Materials in the description's order, then the default one where some shape names none.
+void resolve_materials(const SceneDescription& scene, const Vec3d& origin, Scene& result) {
+  const auto make = [&](const MaterialDescription& description) {
+    result.materials.push_back(make_material(description, description.fresnel.value_or(scene.render.fresnel), origin));
+  };
+  for (const MaterialDescription& material : scene.materials) make(material);
+  const auto fallback = static_cast<std::uint32_t>(scene.materials.size());
+  for (const ShapeDescription& shape : scene.shapes) {
+    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
+                                    [&](const MaterialDescription& m) { return m.name == shape.material; });
+    if (found == scene.materials.end() && !shape.material.empty())
+      throw Error(ErrorKind::bad_input, shape.where, "no material \"" + shape.material + "\"");
+    result.shape_materials.push_back(static_cast<std::uint32_t>(found - scene.materials.begin()));
+    if (result.shape_materials.back() == fallback && result.materials.size() == fallback) make(MaterialDescription());
+  }
+}
+
+std::vector<std::string> features_in_use(const Scene& scene) {
+  std::set<std::string> features;
+  const RenderSettings& render = scene.description.render;
+  for (const std::uint32_t index : scene.shape_materials) {
+    const Material& material = scene.materials[index];
+    if (material.has_reflection) features.insert("reflection");
+    if (material.has_transmission) features.insert("refraction");
+    if (material.has_highlight)
+      features.insert(render.highlights == HighlightForm::reflected ? "highlights (reflected)"
+                                                                    : "highlights (halfway)");
+    if (material.fresnel && (material.has_reflection || material.has_transmission)) features.insert("fresnel");
+    if (material.diffuse.varies || material.ambient.varies) features.insert("checker patterns");
+    if (material.needs_texture) features.insert("texture coordinates");
+  }
+  if (render.shadows && !scene.lights.empty()) features.insert("shadows");
+  if (render.distance_attenuation > 0) features.insert("distance attenuation");
+  if (render.cutoff > 0 && (features.count("reflection") || features.count("refraction"))) features.insert("cutoff");
+  if (render.antialias.method == Antialiasing::Method::grid) features.insert("antialiasing (grid)");
+  if (scene.background.varies) features.insert("gradient background");
+  const ShapeSet& shapes = *scene.shapes;
+  if (std::any_of(shapes.meshes.begin(), shapes.meshes.end(),
+                  [](const MeshEntry& m) { return !m.mesh.normals.empty(); }))
+    features.insert("smooth normals");
+  if (!shapes.meshes.empty()) features.insert("triangle BVH");
+  if (!shapes.spheres.shape.empty()) features.insert("sphere BVH");
+  if (!shapes.discs.shape.empty()) features.insert("disc BVH");
+  if (!shapes.planes.empty()) features.insert("planes");
+  if (shapes.origin != Vec3d(0, 0, 0)) features.insert("recentering");
+  return {features.begin(), features.end()};
+}
+
+void warn_of_open_glass(const Scene& scene, Warnings& warnings) {
+  for (const MeshEntry& entry : scene.shapes->meshes) {
+    if (!scene.materials[scene.shape_materials[entry.shape]].has_transmission) continue;
+    if (const std::int64_t open = count_open_edges(entry.mesh); open > 0)
+      warnings.push_back({scene.description.shapes[entry.shape].where,
+                          "a refractive mesh that is not closed has no inside: open edges", open});
+  }
+}
+
+/// Bytes a triangle or sphere takes in the intersector, measured (docs/architecture.md): an estimate for `info`.
+constexpr std::uint64_t kBytesPerTriangle = 62, kBytesPerSphere = 60;
+
+std::uint64_t estimated_intersector_bytes(const SceneSummary& summary) {
+  std::uint64_t bytes = 0;
+  for (const ShapeSummary& shape : summary.shapes)
+    bytes += kBytesPerTriangle * shape.triangles + kBytesPerSphere * shape.spheres;
+  return bytes;
+}
+
+}  // namespace
+
+Scene::Scene() = default;
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+Scene prepare(SceneDescription description, const PrepareOptions& options, Warnings& warnings) {
+  Scene scene;
+  auto start = std::chrono::steady_clock::now();
+  const CameraDescription camera = chosen_camera(description, options.camera);
+  scene.shapes = std::make_unique<ShapeSet>(assemble_shapes(description, scene.summary, options.stop, warnings));
+  scene.description = std::move(description);
+  const Vec3d origin = scene.shapes->origin;
+
+  resolve_materials(scene.description, origin, scene);
+  for (const LightDescription& light : scene.description.lights) scene.lights.push_back(make_light(light, origin));
+  scene.background = BackgroundLight(scene.description.background);
+  scene.ambient = scene.description.ambient;
+  scene.camera = Camera(camera, scene.description.image.width, scene.description.image.height, origin,
+                        {scene.description.name, 0, "cameras." + camera.name});
+  scene.bound =
+      RadianceBound(scene.materials, scene.lights, scene.background, scene.ambient, scene.description.render.depth);
+
+  std::set<std::string> used;
+  for (std::size_t i = 0; i < scene.shape_materials.size(); ++i) {
+    const std::string& name = scene.description.shapes[i].material;
+    scene.summary.shapes[i].material = name;
+    used.insert(name.empty() ? "(default)" : name);
+  }
+  scene.summary.materials_in_use = {used.begin(), used.end()};
+  scene.summary.features = features_in_use(scene);
+  scene.summary.intersector_bytes = estimated_intersector_bytes(scene.summary);
+  warn_of_open_glass(scene, warnings);
+  scene.seconds.load = seconds_since(start);
+  if (!options.build) return scene;
+
+  start = std::chrono::steady_clock::now();
+  EmbreeOptions embree;
+  embree.threads = options.threads;
+  embree.stop = options.stop;
+  scene.intersector = std::make_unique<EmbreeIntersector>(*scene.shapes, embree);
+  scene.summary.intersector_bytes = scene.intersector->memory_bytes();
+  scene.seconds.build = seconds_since(start);
+  return scene;
+}
+
+}  // namespace raytree

@@ -1,0 +1,82 @@
+// The prepared scene: shapes in tracing form, the intersector built over them, materials and lights resolved.
+// Immutable once made; every thread reads it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geometry/error.h"
+#include "geometry/ray_intersector.h"
+#include "geometry/shape_set.h"
+#include "renderer/background.h"
+#include "renderer/camera.h"
+#include "renderer/light.h"
+#include "renderer/material.h"
+#include "renderer/radiance_bound.h"
+#include "renderer/scene_description.h"
+
+namespace raytree {
+
+/// What stands in a scene, for `info` and for statistics.
+struct ShapeSummary {
+  std::string name;
+  std::string kind;  ///< "mesh", "sphere", ...
+  std::string material;
+  std::uint32_t id = 0;         ///< as in the object_id channel
+  std::uint64_t triangles = 0;  ///< handed to the intersector
+  std::uint64_t spheres = 0;
+  std::uint64_t faces_by_size[3] = {0, 0, 0};  ///< triangles, quads, larger, as the file has them
+  Bounds3d bounds;                             ///< world space; infinite for planes
+};
+
+struct SceneSummary {
+  std::vector<ShapeSummary> shapes;
+  std::vector<std::string> materials_in_use;
+  std::vector<std::string>
+      features;                   ///< parts of the renderer that this scene switches on, e.g. "reflection", "fresnel"
+  Bounds3d bounds;                ///< of what is finite
+  std::uint64_t array_bytes = 0;  ///< vertex, index and sphere arrays
+  std::uint64_t intersector_bytes = 0;  ///< estimated before the build, measured after it
+};
+
+struct PrepareOptions {
+  std::string camera;                       ///< name; empty: the first one
+  int threads = 0;                          ///< that the intersector may use; 0: all of the arena
+  const std::atomic<bool>* stop = nullptr;  ///< checked while building
+  bool build = true;                        ///< false: assemble only, no intersector (for `info`)
+};
+
+struct PhaseSeconds {
+  double load = 0;   ///< reading mesh files, generating shapes, normals, triangulation
+  double build = 0;  ///< the intersector's own build
+};
+
+class Scene {
+ public:
+  Scene();
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  SceneDescription description;  ///< as given, meshes consumed
+  SceneSummary summary;
+  PhaseSeconds seconds;
+  std::unique_ptr<const ShapeSet> shapes;
+  std::unique_ptr<const RayIntersector> intersector;  ///< null when PrepareOptions::build was false
+  std::vector<Material> materials;
+  std::vector<std::uint32_t> shape_materials;  ///< [shape] -> index into materials
+  std::vector<Light> lights;
+  BackgroundLight background;
+  Rgb ambient;
+  Camera camera;
+  RadianceBound bound;
+};
+
+/// Loads mesh files, generates and transforms shapes, builds the intersector. Throws Error; what was odd is added to
+/// warnings. A run that `stop` ended throws Error (failure) "interrupted".
+Scene prepare(SceneDescription description, const PrepareOptions& options, Warnings& warnings);
+
+}  // namespace raytree

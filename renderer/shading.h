@@ -1,0 +1,109 @@
+// What happens at one hit, by Whitted's eq. 2: the point seen from the ray's side, its light from one source, its
+// children. Pure functions; the ray tree (ray_tree.cpp) batches them, the recursion that benchmarks compare with calls
+// them one by one.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "geometry/surface.h"
+#include "renderer/light.h"
+#include "renderer/material.h"
+#include "renderer/optics.h"
+
+namespace raytree {
+
+/// A hit ready for shading. Normals are turned to the side that the ray comes from; side is decided by the geometric
+/// normal.
+struct ShadingPoint {
+  SurfacePoint surface;      ///< normals turned to the ray's side
+  Vec3f direction;           ///< of the ray, unit
+  const Material* material;  ///< never null
+  Rgb diffuse;               ///< k_d here
+  bool leaving = false;      ///< the ray hit the surface from behind: it is leaving the inside
+};
+
+inline ShadingPoint shading_point(const SurfacePoint& surface, const Vec3f& direction, const Material& material) {
+  ShadingPoint point{surface, direction, &material, material.diffuse.at(surface), false};
+  if (direction.dot(surface.geometric_normal) > 0) {
+    point.leaving = true;
+    point.surface.geometric_normal = -surface.geometric_normal;
+    point.surface.shading_normal = -surface.shading_normal;
+  }
+  return point;
+}
+
+/// Light of one source as it arrives where nothing is in the way: diffuse and highlight shares apart, since a switch
+/// says whether a shadow takes the highlight too.
+struct LocalLight {
+  Rgb diffuse, highlight;
+  Vec3f direction;   ///< unit, to the light
+  float distance;    ///< to the light; infinity: directional
+  bool lit = false;  ///< the light stands on the side that is seen, by both normals
+};
+
+/// k_d (N.L) and W (R.L)^n (Phong 1973, eq. 4.5) or W (N.H)^n (Whitted 1980, eq. 1), times the light's color.
+inline LocalLight local_light(const ShadingPoint& point, const Light& light, HighlightForm form) {
+  LocalLight result;
+  result.direction = light.direction_from(point.surface.position, result.distance);
+  const Vec3f& normal = point.surface.shading_normal;
+  const float cosine = normal.dot(result.direction);
+  if (!(cosine > 0) || !(point.surface.geometric_normal.dot(result.direction) > 0)) return result;
+  result.lit = true;
+  const Material& material = *point.material;
+  result.diffuse = light.color * point.diffuse * std::min(cosine, 1.0f);
+  if (material.has_highlight) {
+    float base;
+    if (form == HighlightForm::reflected) {
+      const Vec3f mirrored = normal * (2 * cosine) - result.direction;
+      base = -mirrored.dot(point.direction);
+    } else {
+      const Vec3f halfway = result.direction - point.direction;
+      const float square = halfway.dot(halfway);
+      base = square > 0 ? normal.dot(halfway) / std::sqrt(square) : 0.0f;
+    }
+    if (base > 0)
+      result.highlight = light.color * material.highlight * std::pow(std::min(base, 1.0f), material.exponent);
+  }
+  return result;
+}
+
+/// Weights and directions of the two children of a hit. A weight of zero: no such child.
+struct Branches {
+  Rgb reflected_weight, refracted_weight;
+  Vec3f reflected, refracted;  ///< unit; set where the weight is not zero
+};
+
+/// R and P with k_s and k_t, or with k_s F and k_t (1 - F). At total internal reflection T = 0; F = 1.
+inline Branches branches(const ShadingPoint& point) {
+  const Material& material = *point.material;
+  const Vec3f& side = point.surface.geometric_normal;
+  Vec3f normal = point.surface.shading_normal;
+  float cosine = -point.direction.dot(normal);
+  if (!(cosine > 0)) {
+    // An interpolated normal may lean away from the viewer near a silhouette: there the facet's own serves.
+    normal = side;
+    cosine = -point.direction.dot(normal);
+  }
+  Branches result;
+  float reflectance = 1;
+  if (material.has_transmission || material.fresnel) {
+    const float relative_index = point.leaving ? 1 / material.index : material.index;
+    if (material.fresnel) reflectance = fresnel_reflectance(std::min(cosine, 1.0f), relative_index);
+    if (material.has_transmission)
+      if (const auto refracted = refracted_direction(point.direction, normal, relative_index)) {
+        result.refracted = kept_on_side(*refracted, -side);
+        result.refracted_weight = material.fresnel ? material.transmission * (1 - reflectance) : material.transmission;
+      }
+  }
+  if (material.has_reflection) {
+    result.reflected = kept_on_side(reflected_direction(point.direction, normal), side);
+    result.reflected_weight = material.fresnel ? material.reflection * reflectance : material.reflection;
+  }
+  return result;
+}
+
+/// Whitted's linear attenuation of a child segment (1980, sec. 2), clamped at 0: max(0, 1 - a t).
+inline float segment_attenuation(float rate, float distance) { return std::max(0.0f, 1 - rate * distance); }
+
+}  // namespace raytree

@@ -1,0 +1,285 @@
+#include "renderer/shape_assembly.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "geometry/mesh_file.h"
+#include "geometry/sphere_flake.h"
+#include "geometry/terrain.h"
+#include "geometry/triangulation.h"
+#include "geometry/vertex_normals.h"
+
+namespace raytree {
+namespace {
+
+constexpr std::size_t kGrain = 65536;
+
+template <class Function>
+void for_each_index(std::size_t count, Function&& function) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) function(i);
+  });
+}
+
+Vec3d transformed_point(const Vec3d& point, const Matrix44d& m) { return point * m; }
+
+Vec3d transformed_vector(const Vec3d& vector, const Matrix44d& m) {
+  Vec3d result;
+  m.multDirMatrix(vector, result);
+  return result;
+}
+
+/// Normals go by the inverse transpose of the linear part.
+Vec3d transformed_normal(const Vec3d& normal, const Matrix44d& inverse_transpose) {
+  return unit(transformed_vector(normal, inverse_transpose));
+}
+
+bool mirrors(const Matrix44d& m) { return m.determinant() < 0; }
+
+/// The factor of a transform that scales all directions alike; throws for any other.
+double uniform_scale(const Matrix44d& m, const char* kind, const SourceLocation& where) {
+  const Vec3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
+  const double scale = x.length();
+  const double tolerance = 1e-9 * scale * scale;
+  const bool uniform = std::abs(x.dot(x) - y.dot(y)) <= tolerance && std::abs(x.dot(x) - z.dot(z)) <= tolerance &&
+                       std::abs(x.dot(y)) <= tolerance && std::abs(x.dot(z)) <= tolerance &&
+                       std::abs(y.dot(z)) <= tolerance;
+  if (!uniform || !(scale > 0))
+    throw Error(ErrorKind::bad_input, where,
+                std::string("a ") + kind + " takes a transform with one scale for all axes");
+  return scale;
+}
+
+void transform_mesh(TriangleMesh& mesh, const Matrix44d& m) {
+  if (m == Matrix44d()) return;
+  mesh.origin = transformed_point(mesh.origin, m);
+  for_each_index(mesh.positions.size(),
+                 [&](std::size_t i) { mesh.positions[i] = Vec3f(transformed_vector(Vec3d(mesh.positions[i]), m)); });
+  const Matrix44d inverse_transpose = m.inverse().transposed();
+  for_each_index(mesh.normals.size(), [&](std::size_t i) {
+    mesh.normals[i] = Vec3f(transformed_normal(Vec3d(mesh.normals[i]), inverse_transpose));
+  });
+  if (!mirrors(m)) return;
+  // A mirrored triangle is wound the other way round.
+  const auto reverse = [](Buffer<std::uint32_t>& corners) {
+    for_each_index(corners.size() / 3, [&](std::size_t i) { std::swap(corners[3 * i + 1], corners[3 * i + 2]); });
+  };
+  // Arrays indexed per position are reversed with the corners.
+  reverse(mesh.corners);
+  reverse(mesh.normal_corners);
+  reverse(mesh.texture_corners);
+}
+
+/// Everything finite of the scene in world space, in double, until the scene's origin is known.
+struct Assembly {
+  std::vector<MeshEntry> meshes;
+  struct WorldSphere {
+    Vec3d center;
+    double radius;
+    ShapeId shape;
+  };
+  std::vector<WorldSphere> spheres;
+  struct Flake {
+    SphereArrays arrays;
+    Matrix44d transform;
+    double scale;
+    ShapeId shape;
+  };
+  std::vector<Flake> flakes;
+  struct WorldDisc {
+    Vec3d center, normal;
+    double radius;
+    ShapeId shape;
+  };
+  std::vector<WorldDisc> discs;
+  std::vector<Plane> planes;
+};
+
+void count_faces(const PolygonMesh& mesh, ShapeSummary& summary) {
+  if (mesh.all_triangles()) {
+    summary.faces_by_size[0] = mesh.face_count();
+    return;
+  }
+  for (const std::uint32_t size : mesh.face_sizes) ++summary.faces_by_size[size == 3 ? 0 : size == 4 ? 1 : 2];
+}
+
+void apply_normal_source(PolygonMesh& mesh, const MeshShape& shape, const SourceLocation& where, Warnings& warnings) {
+  const bool from_file = shape.normals == NormalSource::file && !mesh.normals.empty();
+  if (from_file) {
+    if (const std::int64_t replaced = normalize_vertex_normals(mesh); replaced > 0)
+      warnings.push_back({where, "normals of no length replaced by their face's", replaced});
+    return;
+  }
+  mesh.normals = {};
+  mesh.normal_corners = {};
+  if (shape.normals != NormalSource::flat) compute_vertex_normals(mesh, shape.crease_angle * std::numbers::pi / 180);
+}
+
+class Assembler {
+ public:
+  Assembler(const SceneDescription& scene, Warnings& warnings) : scene_(scene), warnings_(warnings) {}
+
+  Assembly assembly;
+
+  void add(ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.name = shape.name;
+    summary.id = id + 1;
+    std::visit([&](auto& kind) { add_kind(kind, shape, id, summary); }, shape.kind);
+  }
+
+ private:
+  void add_mesh(TriangleMesh&& mesh, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    transform_mesh(mesh, shape.transform);
+    summary.triangles = mesh.triangle_count();
+    PolygonMesh view;  // bounds() asks for positions and origin alone
+    view.origin = mesh.origin;
+    view.positions.swap(mesh.positions);
+    summary.bounds = bounds(view);
+    view.positions.swap(mesh.positions);
+    assembly.meshes.push_back({std::move(mesh), id});
+  }
+
+  void add_kind(MeshShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "mesh";
+    std::shared_ptr<PolygonMesh> mesh = std::move(kind.mesh);
+    if (!mesh) {
+      const std::filesystem::path path = std::filesystem::path(scene_.folder) / kind.file;
+      try {
+        mesh = std::make_shared<PolygonMesh>(read_mesh_file(path.string(), warnings_));
+      } catch (const Error& error) {
+        // A file that cannot be had is the scene's mistake: say where the scene names it.
+        if (std::filesystem::exists(path) || shape.where.file.empty()) throw;
+        throw Error(error.kind(), shape.where, error.what());
+      }
+    }
+    count_faces(*mesh, summary);
+    apply_normal_source(*mesh, kind, shape.where, warnings_);
+    add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
+  }
+
+  void add_kind(TerrainShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "terrain";
+    TriangleMesh mesh = make_terrain({kind.triangles, kind.size, kind.height, kind.roughness, kind.seed});
+    summary.faces_by_size[0] = mesh.triangle_count();
+    add_mesh(std::move(mesh), shape, id, summary);
+  }
+
+  void add_kind(SphereShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "sphere";
+    summary.spheres = 1;
+    const Vec3d center = transformed_point(kind.center, shape.transform);
+    const double radius = kind.radius * uniform_scale(shape.transform, "sphere", shape.where);
+    summary.bounds = {center - Vec3d(radius), center + Vec3d(radius)};
+    assembly.spheres.push_back({center, radius, id});
+  }
+
+  void add_kind(SphereFlakeShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "sphere_flake";
+    const SphereFlakeParameters parameters{kind.levels, kind.center, kind.radius};
+    Assembly::Flake flake{make_sphere_flake(parameters), shape.transform,
+                          uniform_scale(shape.transform, "sphere flake", shape.where), id};
+    summary.spheres = flake.arrays.sphere_count();
+    for (std::size_t i = 0; i < flake.arrays.sphere_count(); ++i) {
+      const Vec3d center = transformed_point(flake.arrays.origin + Vec3d(flake.arrays.centers[i]), shape.transform);
+      const Vec3d reach(flake.arrays.radii[i] * flake.scale);
+      summary.bounds.extendBy(center - reach);
+      summary.bounds.extendBy(center + reach);
+    }
+    assembly.flakes.push_back(std::move(flake));
+  }
+
+  void add_kind(PlaneShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "plane";
+    const Vec3d normal = transformed_normal(kind.normal, shape.transform.inverse().transposed());
+    summary.bounds.makeInfinite();
+    assembly.planes.push_back({transformed_point(kind.point, shape.transform), normal, id});
+  }
+
+  void add_kind(DiscShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "disc";
+    const double scale = uniform_scale(shape.transform, "disc", shape.where);
+    const Vec3d center = transformed_point(kind.center, shape.transform);
+    const Vec3d normal = transformed_normal(kind.normal, shape.transform.inverse().transposed());
+    const double radius = kind.radius * scale;
+    const auto reach = [&](double n) { return radius * std::sqrt(std::max(0.0, 1 - n * n)); };
+    const Vec3d half(reach(normal.x), reach(normal.y), reach(normal.z));
+    summary.bounds = {center - half, center + half};
+    assembly.discs.push_back({center, normal, radius, id});
+  }
+
+  const SceneDescription& scene_;
+  Warnings& warnings_;
+};
+
+/// Where scene space begins: at the world's origin, unless the scene lies further from it than it is wide; then float
+/// would lose digits, and its center serves.
+Vec3d scene_origin(const Bounds3d& bounds) {
+  if (bounds.isEmpty()) return {0, 0, 0};
+  const Vec3d center = bounds.center(), size = bounds.size();
+  const auto largest = [](const Vec3d& v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); };
+  return largest(center) > largest(size) ? center : Vec3d(0, 0, 0);
+}
+
+void move_to_scene_space(Assembly& assembly, ShapeSet& shapes) {
+  const Vec3d origin = shapes.origin;
+  for (MeshEntry& entry : assembly.meshes) {
+    const Vec3d shift = entry.mesh.origin - origin;
+    if (shift != Vec3d(0, 0, 0))
+      for_each_index(entry.mesh.positions.size(),
+                     [&](std::size_t i) { entry.mesh.positions[i] = Vec3f(Vec3d(entry.mesh.positions[i]) + shift); });
+    entry.mesh.origin = {0, 0, 0};
+  }
+  shapes.meshes = std::move(assembly.meshes);
+
+  SphereArray& spheres = shapes.spheres;
+  const auto add_sphere = [&](const Vec3d& center, double radius, ShapeId shape) {
+    const Vec3f c(center - origin);
+    spheres.center_radius.push_back({c.x, c.y, c.z, static_cast<float>(radius)});
+    spheres.shape.push_back(shape);
+  };
+  std::size_t count = assembly.spheres.size();
+  for (const auto& flake : assembly.flakes) count += flake.arrays.sphere_count();
+  spheres.center_radius.reserve(count);
+  spheres.shape.reserve(count);
+  for (const auto& sphere : assembly.spheres) add_sphere(sphere.center, sphere.radius, sphere.shape);
+  for (const auto& flake : assembly.flakes)
+    for (std::size_t i = 0; i < flake.arrays.sphere_count(); ++i)
+      add_sphere(transformed_point(flake.arrays.origin + Vec3d(flake.arrays.centers[i]), flake.transform),
+                 flake.arrays.radii[i] * flake.scale, flake.shape);
+
+  for (const auto& disc : assembly.discs) {
+    const Vec3f c(disc.center - origin);
+    shapes.discs.center_radius.push_back({c.x, c.y, c.z, static_cast<float>(disc.radius)});
+    shapes.discs.normal.push_back(Vec3f(disc.normal));
+    shapes.discs.shape.push_back(disc.shape);
+  }
+  shapes.planes = std::move(assembly.planes);
+  for (Plane& plane : shapes.planes) plane.point -= origin;
+}
+
+}  // namespace
+
+ShapeSet assemble_shapes(SceneDescription& description, SceneSummary& summary, const std::atomic<bool>* stop,
+                         Warnings& warnings) {
+  Assembler assembler(description, warnings);
+  summary.shapes.resize(description.shapes.size());
+  for (std::size_t i = 0; i < description.shapes.size(); ++i) {
+    if (stop != nullptr && stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
+    ShapeSummary& shape = summary.shapes[i];
+    assembler.add(description.shapes[i], static_cast<ShapeId>(i), shape);
+    if (!shape.bounds.isInfinite()) summary.bounds.extendBy(shape.bounds);
+  }
+  ShapeSet shapes;
+  shapes.origin = scene_origin(summary.bounds);
+  move_to_scene_space(assembler.assembly, shapes);
+  summary.array_bytes = memory_bytes(shapes);
+  return shapes;
+}
+
+}  // namespace raytree

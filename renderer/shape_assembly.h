@@ -1,0 +1,17 @@
+// From shape descriptions to shapes in tracing form: files read, generators run, normals and triangles made, everything
+// transformed and moved into scene space.
+#pragma once
+
+#include "geometry/error.h"
+#include "geometry/shape_set.h"
+#include "renderer/scene.h"
+#include "renderer/scene_description.h"
+
+namespace raytree {
+
+/// Consumes the meshes of `description`; fills summary.shapes, bounds and array_bytes. Shape i of the description is
+/// ShapeId i. Throws Error (bad_input).
+ShapeSet assemble_shapes(SceneDescription& description, SceneSummary& summary, const std::atomic<bool>* stop,
+                         Warnings& warnings);
+
+}  // namespace raytree
