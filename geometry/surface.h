@@ -42,6 +42,14 @@ struct SurfacePoint {
 inline Vec3f unit(const Vec3f& v) { return v * (1 / std::sqrt(v.dot(v))); }
 inline Vec3d unit(const Vec3d& v) { return v * (1 / std::sqrt(v.dot(v))); }
 
+/// A vector that is unit but for rounding made unit again: one step of Newton's method for the inverse root, so that
+/// the length does not drift over a deep tree.
+template <class Vec>
+Vec renormalized(const Vec& v) {
+  using Real = typename Vec::BaseType;
+  return v * (Real(1.5) - Real(0.5) * v.dot(v));
+}
+
 namespace detail {
 
 /// Distance from which a new ray starts, for a point computed from coordinates of up to `largest` per component. Per

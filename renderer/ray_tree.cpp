@@ -55,7 +55,7 @@ struct TileTracer::State {
         occluded(kBatchSize + kBatchPadding),
         shadow_samples(kBatchSize),
         shadow_light(kBatchSize),
-        contexts(kBatchSize),
+        eye_rays(kBatchSize),
         radiance(kBatchSize),
         truncation(kBatchSize),
         ray_counts(kBatchSize),
@@ -87,7 +87,6 @@ struct TileTracer::State {
   bool finish_chunk();
   void trace_batch(Coherence coherence, bool eye);
   void collect_hits(bool eye);
-  void add_ambient();
   void add_lights();
   void spawn();
   void spawn_child(const BatchPoint& point, const Vec3f& direction, const Rgb& weight, float allowance, bool refracted);
@@ -107,9 +106,10 @@ struct TileTracer::State {
   std::vector<std::uint32_t> shadow_samples;
   std::vector<Rgb> shadow_light;  ///< what a shadow ray brings when nothing is in its way
 
-  std::vector<PendingRay> contexts;  ///< [rays.size] of the batch under way
-  std::vector<BatchPoint> points;    ///< hits of the batch under way
-  std::vector<PendingRay> pending;   ///< the newest rays are traced first
+  std::vector<PendingRay> eye_rays;      ///< contexts of the chunk's eye rays
+  const PendingRay* contexts = nullptr;  ///< [rays.size] of the batch under way; read before children are spawned
+  std::vector<BatchPoint> points;        ///< hits of the batch under way
+  std::vector<PendingRay> pending;       ///< the newest rays are traced first
 
   // The chunk of samples under way.
   std::size_t chunk_size = 0;
@@ -163,7 +163,7 @@ void TileTracer::State::add_eye_sample(float x, float y, int pixel, bool center)
   Vec3f origin, direction;
   scene.camera.ray(x, y, origin, direction);
   rays.set(i, origin, direction, std::numeric_limits<float>::infinity());
-  contexts[i] = {origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint32_t>(i), Rgb(1), 1, 0};
+  eye_rays[i] = {origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint32_t>(i), Rgb(1), 1, 0};
   radiance[i] = truncation[i] = Rgb();
   ray_counts[i] = 1;
   pixel_of_sample[i] = static_cast<std::uint16_t>(pixel);
@@ -175,18 +175,18 @@ bool TileTracer::State::finish_chunk() {
   rays.size = chunk_size;
   statistics.rays[static_cast<int>(RayKind::primary)] += chunk_size;
   statistics.samples += chunk_size;
+  contexts = eye_rays.data();
   trace_batch(Coherence::coherent, true);
   while (!pending.empty()) {
     if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) return false;
     const std::size_t count = std::min(kBatchSize, pending.size());
-    const PendingRay* first = pending.data() + pending.size() - count;
+    contexts = pending.data() + pending.size() - count;
     for (std::size_t i = 0; i < count; ++i) {
-      const PendingRay& ray = contexts[i] = first[i];
+      const PendingRay& ray = contexts[i];
       rays.set(i, ray.origin, ray.direction, std::numeric_limits<float>::infinity());
       if (counts_rays) ++ray_counts[ray.sample];
     }
     rays.size = count;
-    pending.resize(pending.size() - count);
     trace_batch(Coherence::incoherent, false);
   }
   for (std::size_t i = 0; i < chunk_size; ++i) {
@@ -212,7 +212,7 @@ void TileTracer::State::trace_batch(Coherence coherence, bool eye) {
   const auto hit = Clock::now();
   const double intersection_before = statistics.intersection_seconds;
   collect_hits(eye);
-  add_ambient();
+  if (!eye) pending.resize(pending.size() - rays.size);
   add_lights();
   spawn();
   const double shadow_seconds = statistics.intersection_seconds - intersection_before;
@@ -240,14 +240,11 @@ void TileTracer::State::collect_hits(bool eye) {
         BatchPoint{shading_point(surface, ray.direction, material), ray.weight, ray.allowance, ray.sample, ray.level});
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && !eye)
       point.weight *= segment_attenuation(static_cast<float>(settings.distance_attenuation), surface.distance);
+    radiance[ray.sample] +=
+        point.weight * scene.ambient *
+        (material.ambient_as_diffuse ? point.shading.diffuse : material.ambient.at(point.shading.surface));
     if (eye && records_first_hit) record_first_hit(point, hit, shape);
   }
-}
-
-void TileTracer::State::add_ambient() {
-  if (is_black(scene.ambient)) return;
-  for (const BatchPoint& point : points)
-    radiance[point.sample] += point.weight * scene.ambient * point.shading.material->ambient.at(point.shading.surface);
 }
 
 void TileTracer::State::add_lights() {

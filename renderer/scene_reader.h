@@ -24,6 +24,9 @@ void set_scene_value(SceneDescription& scene, const std::string& path, const std
 /// JSON Schema (draft 2020-12) of a scene file.
 std::string scene_schema();
 
+/// The tables of docs/scene-format.md, in Markdown: every key with its type, default, range and meaning.
+std::string scene_reference();
+
 /// The scene as a scene file that reads back equal (in-memory meshes as vertex and face lists).
 std::string write_scene(const SceneDescription& scene);
 
