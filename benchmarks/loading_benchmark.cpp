@@ -159,8 +159,8 @@ int run(int repetitions) {
                       {"OBJ", "waves.obj", Kind::obj, 100}};
   const PolygonMesh mesh = waves();
   const TemporaryFolder folder;
-  std::printf("%zu triangles, %u hardware threads, best of %d\n", mesh.face_count(), std::thread::hardware_concurrency(),
-              repetitions);
+  std::printf("%zu triangles, %u hardware threads, best of %d\n", mesh.face_count(),
+              std::thread::hardware_concurrency(), repetitions);
   std::printf("%-28s %8s %9s %9s %9s  %s\n", "file", "MB", "ms", "MB/s", "peak/kept", "bounds");
   bool short_of = false;
   for (const Row& row : rows) {
