@@ -149,19 +149,19 @@ SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string
   scene.cameras = {fitted_camera(*mesh, box, image)};
 
   const Vec3d to_key = towards(axes, -0.75, 1.15, 0.7), to_fill = towards(axes, 0.9, 0.45, 0.5);
-  const Rgb key(0.80f, 0.76f, 0.69f), fill(0.13f, 0.15f, 0.19f);
-  scene.ambient = Rgb(0.22f, 0.23f, 0.25f);
+  const Rgb key(0.98f, 0.93f, 0.84f), fill(0.15f, 0.18f, 0.24f);
+  scene.ambient = Rgb(0.15f, 0.16f, 0.18f);
   scene.lights = {{"key", key, DirectionalLight{-to_key}}, {"fill", fill, DirectionalLight{-to_fill}}};
 
   MaterialDescription clay;
   clay.name = "clay";
-  clay.diffuse = Rgb(0.70f, 0.58f, 0.46f);
+  clay.diffuse = Rgb(0.66f, 0.44f, 0.30f);
   clay.highlight = {Rgb(0.22f), 28};
   clay.reflection = Rgb(0.035f);
 
   MaterialDescription floor;
   floor.name = "ground";
-  const Rgb floor_color(0.52f, 0.52f, 0.53f);
+  const Rgb floor_color(0.24f, 0.25f, 0.27f);
   floor.diffuse = floor_color;
   floor.reflection = Rgb(0.06f);
   scene.materials = {clay, floor};
@@ -170,7 +170,7 @@ SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string
   const Rgb local =
       floor_color * (scene.ambient + key * static_cast<float>(to_key.y) + fill * static_cast<float>(to_fill.y));
   const Rgb horizon = local * (1 / (1 - floor.reflection.r));
-  scene.background = GradientBackground{local, horizon, Rgb(0.10f, 0.12f, 0.16f)};
+  scene.background = GradientBackground{local, horizon, Rgb(0.03f, 0.04f, 0.06f)};
 
   // The ground touches the lowest vertex; what lies flat on it stays clear of it by a little, since two surfaces at one
   // place have no front.

@@ -421,7 +421,7 @@ TEST(CommandLineRender, StatisticsHaveTheDocumentedKeys) {
   const Json json = Json::parse(file_text(folder.path("s.json")));
   const std::string documentation = documentation_of("render");
   const std::function<void(const Json&, const std::string&)> visit = [&](const Json& value, const std::string& name) {
-    if (!name.empty()) EXPECT_TRUE(contains(documentation, "`" + name + "`")) << name;
+    EXPECT_TRUE(name.empty() || contains(documentation, "`" + name + "`")) << name;
     if (value.is_object())
       for (const auto& [key, part] : value.items()) visit(part, name.empty() ? key : name + "." + key);
   };
