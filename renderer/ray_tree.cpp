@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "renderer/features.h"
 #include "renderer/shading.h"
@@ -225,7 +226,10 @@ void TileTracer::State::collect_hits(bool eye) {
   for (std::size_t i = 0; i < rays.size; ++i) {
     const PendingRay& ray = contexts[i];
     if (hits.geometry[i] == kNoGeometry) {
-      radiance[ray.sample] += ray.weight * scene.background.along(ray.direction);
+      // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
+      const Vec3f poison = (ray.origin + ray.direction) * 0.0f;
+      radiance[ray.sample] +=
+          ray.weight * scene.background.along(ray.direction) + Rgb(poison.x + poison.y + poison.z);
       continue;
     }
     const Hit hit = hits[i];
@@ -358,6 +362,10 @@ void TileTracer::State::resolve_tile(int x0, int y0, int samples_per_pixel) {
         pixels[static_cast<std::size_t>(y - window.y0) * window.width + (x - window.x0)] =
             static_cast<float>(value((y - y0) * kTileSize + (x - x0)));
   };
+  // Colors are judged sample by sample; what else may not be a number, since some input was not, becomes 0 here.
+  const auto finite = [](double value) {
+    return std::abs(value) <= std::numeric_limits<float>::max() ? value : 0.0;
+  };
   const auto write_ids = [&](ChannelGroup group, auto&& value) {
     std::uint32_t* pixels = film.id_plane(group);
     for (int y = top; y < bottom; ++y)
@@ -372,15 +380,15 @@ void TileTracer::State::resolve_tile(int x0, int y0, int samples_per_pixel) {
     write(ChannelGroup::color, 2, [&](int i) { return color_sum[i].b * scale; });
   }
   if (channels.has(ChannelGroup::truncation)) {
-    write(ChannelGroup::truncation, 0, [&](int i) { return truncation_sum[i].r * scale; });
-    write(ChannelGroup::truncation, 1, [&](int i) { return truncation_sum[i].g * scale; });
-    write(ChannelGroup::truncation, 2, [&](int i) { return truncation_sum[i].b * scale; });
+    write(ChannelGroup::truncation, 0, [&](int i) { return finite(truncation_sum[i].r * scale); });
+    write(ChannelGroup::truncation, 1, [&](int i) { return finite(truncation_sum[i].g * scale); });
+    write(ChannelGroup::truncation, 2, [&](int i) { return finite(truncation_sum[i].b * scale); });
   }
   if (channels.has(ChannelGroup::alpha))
     write(ChannelGroup::alpha, 0, [&](int i) { return first_hits[i].count * scale; });
   if (channels.has(ChannelGroup::depth))
     write(ChannelGroup::depth, 0, [&](int i) {
-      return first_hits[i].count > 0 ? first_hits[i].depth / first_hits[i].count
+      return first_hits[i].count > 0 ? finite(first_hits[i].depth / first_hits[i].count)
                                      : std::numeric_limits<double>::infinity();
     });
   if (channels.has(ChannelGroup::normal))
@@ -388,12 +396,12 @@ void TileTracer::State::resolve_tile(int x0, int y0, int samples_per_pixel) {
       write(ChannelGroup::normal, axis, [&](int i) {
         const double* n = first_hits[i].normal;
         const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        return length > 0 ? n[axis] / length : 0.0;
+        return length > 0 ? finite(n[axis] / length) : 0.0;
       });
   if (channels.has(ChannelGroup::albedo))
     for (int c = 0; c < 3; ++c)
       write(ChannelGroup::albedo, c,
-            [&](int i) { return first_hits[i].count > 0 ? first_hits[i].albedo[c] / first_hits[i].count : 0.0; });
+            [&](int i) { return first_hits[i].count > 0 ? finite(first_hits[i].albedo[c] / first_hits[i].count) : 0.0; });
   if (channels.has(ChannelGroup::object_id))
     write_ids(ChannelGroup::object_id, [&](int i) { return first_hits[i].object; });
   if (channels.has(ChannelGroup::material_id))
