@@ -1,0 +1,231 @@
+// `raytree info`: what is in a scene, what it will take and which parts of the renderer it switches on. Meshes are
+// loaded, nothing is built or traced.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/exit_status.h"
+#include "app/interruption.h"
+#include "app/messages.h"
+#include "app/render_options.h"
+#include "app/suggestion.h"
+#include "renderer/scene.h"
+
+namespace raytree::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+  SceneFlags scene;
+  int threads = 0;
+  ChannelSet channels;
+  bool json = false, quiet = false;
+};
+
+std::optional<InfoOptions> parse_info_options(const Words& words) {
+  InfoOptions options;
+  std::string threads, channels;
+  CLI::App command("Say what is in a scene, and what it will take, without rendering.", "raytree info");
+  command
+      .add_option("SCENE", options.scene.scene,
+                  "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)")
+      ->type_name("");
+  command.add_flag("--json", options.json, "Print JSON");
+  add_scene_flags(command, options.scene, false);
+  command.add_option("--channels", channels, "Channel groups that the film is reckoned with, or all")
+      ->type_name("LIST");
+  command.add_option("--threads", threads, "Threads; default: all")->type_name("N");
+  command.add_flag("--quiet", options.quiet, "No warnings");
+  prepare_usage(command);
+  if (!parse_usage(command, words)) return std::nullopt;
+  check_scene_flags(options.scene);
+  options.threads = parse_threads(threads);
+  options.channels = channels.empty() ? ChannelSet{ChannelGroup::color, ChannelGroup::alpha} : parse_channels(channels);
+  return options;
+}
+
+/// As Film holds them: four bytes a pixel and plane.
+std::uint64_t film_bytes(const ImageDescription& image, const ChannelSet& channels) {
+  std::uint64_t planes = 0;
+  for (int i = 0; i < kChannelGroupCount; ++i)
+    if (const auto group = static_cast<ChannelGroup>(i); channels.has(group)) planes += plane_names(group).size();
+  return planes * 4 * static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+}
+
+bool is_bounded(const Bounds3d& box) {
+  return !box.isEmpty() && std::isfinite(box.min.length2()) && std::isfinite(box.max.length2()) &&
+         box.min.length2() < 1e300 && box.max.length2() < 1e300;
+}
+
+Json json_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
+Json json_of(const Bounds3d& box) {
+  if (!is_bounded(box)) return nullptr;
+  return {{"min", json_of(box.min)}, {"max", json_of(box.max)}};
+}
+
+const char* kind_of(const LightDescription& light) {
+  return std::holds_alternative<DirectionalLight>(light.kind) ? "directional" : "point";
+}
+
+std::string camera_name(const Scene& scene, const SceneFlags& flags) {
+  if (!flags.camera.empty() || scene.description.cameras.empty()) return flags.camera;
+  return scene.description.cameras.front().name;
+}
+
+struct Totals {
+  std::uint64_t faces[3] = {0, 0, 0}, triangles = 0, spheres = 0;
+};
+
+Totals totals(const SceneSummary& summary) {
+  Totals sum;
+  for (const ShapeSummary& shape : summary.shapes) {
+    for (int i = 0; i < 3; ++i) sum.faces[i] += shape.faces_by_size[i];
+    sum.triangles += shape.triangles;
+    sum.spheres += shape.spheres;
+  }
+  return sum;
+}
+
+std::string info_json(const Scene& scene, const InfoOptions& options) {
+  const SceneDescription& description = scene.description;
+  const SceneSummary& summary = scene.summary;
+  const std::uint64_t film = film_bytes(description.image, options.channels);
+  Json json;
+  json["scene"] = description.name;
+  json["title"] = description.title;
+  json["image"] = {{"width", description.image.width}, {"height", description.image.height}};
+  json["camera"] = camera_name(scene, options.scene);
+  json["cameras"] = Json::array();
+  for (const CameraDescription& camera : description.cameras) json["cameras"].push_back(camera.name);
+  json["bounds"] = json_of(summary.bounds);
+  json["objects"] = Json::array();
+  for (const ShapeSummary& shape : summary.shapes)
+    json["objects"].push_back({{"id", shape.id},
+                               {"name", shape.name},
+                               {"kind", shape.kind},
+                               {"material", shape.material},
+                               {"faces",
+                                {{"triangles", shape.faces_by_size[0]},
+                                 {"quads", shape.faces_by_size[1]},
+                                 {"larger", shape.faces_by_size[2]}}},
+                               {"traced_triangles", shape.triangles},
+                               {"spheres", shape.spheres},
+                               {"bounds", json_of(shape.bounds)}});
+  const Totals sum = totals(summary);
+  json["totals"] = {{"objects", summary.shapes.size()},
+                    {"faces", {{"triangles", sum.faces[0]}, {"quads", sum.faces[1]}, {"larger", sum.faces[2]}}},
+                    {"traced_triangles", sum.triangles},
+                    {"spheres", sum.spheres}};
+  json["materials_in_use"] = summary.materials_in_use;
+  json["lights"] = Json::array();
+  for (const LightDescription& light : description.lights)
+    json["lights"].push_back(
+        {{"name", light.name}, {"kind", kind_of(light)}, {"color", {light.color.r, light.color.g, light.color.b}}});
+  json["features"] = summary.features;
+  json["memory_bytes"] = {{"arrays", summary.array_bytes},
+                          {"intersector", summary.intersector_bytes},
+                          {"film", film},
+                          {"total", summary.array_bytes + summary.intersector_bytes + film}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string text_of(const Bounds3d& box) {
+  if (!is_bounded(box)) return "unbounded";
+  return fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", box.min.x, box.min.y, box.min.z, box.max.x,
+                     box.max.y, box.max.z);
+}
+
+std::string text_of(const std::vector<std::string>& words) { return words.empty() ? "none" : joined(words); }
+
+/// Columns as wide as their widest cell; the last one is left as it is.
+std::string table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line = " ";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line += i + 1 < row.size() ? fmt::format(" {:<{}} ", row[i], widths[i]) : " " + row[i];
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::string info_text(const Scene& scene, const InfoOptions& options) {
+  constexpr std::size_t kObjectsShown = 40;
+  const SceneDescription& description = scene.description;
+  const SceneSummary& summary = scene.summary;
+  std::string text = fmt::format("scene      {}\n", description.name);
+  if (!description.title.empty()) text += fmt::format("title      {}\n", description.title);
+  text += fmt::format("image      {} x {} pixels\n", description.image.width, description.image.height);
+  std::vector<std::string> cameras;
+  for (const CameraDescription& camera : description.cameras) cameras.push_back(camera.name);
+  text += fmt::format("camera     {}{}\n", camera_name(scene, options.scene),
+                      cameras.size() > 1 ? " (of " + joined(cameras) + ")" : "");
+  const Totals sum = totals(summary);
+  text += fmt::format("objects    {}\n", grouped(summary.shapes.size()));
+  std::vector<std::vector<std::string>> rows = {
+      {"id", "name", "kind", "material", "triangles", "quads", "larger", "traced", "spheres", "bounds"}};
+  for (std::size_t i = 0; i < std::min(kObjectsShown, summary.shapes.size()); ++i) {
+    const ShapeSummary& shape = summary.shapes[i];
+    rows.push_back({std::to_string(shape.id), shape.name, shape.kind, shape.material, grouped(shape.faces_by_size[0]),
+                    grouped(shape.faces_by_size[1]), grouped(shape.faces_by_size[2]), grouped(shape.triangles),
+                    grouped(shape.spheres), text_of(shape.bounds)});
+  }
+  if (rows.size() > 1) text += table(rows);
+  if (summary.shapes.size() > kObjectsShown)
+    text += fmt::format("  ... and {} more (--json lists all)\n", grouped(summary.shapes.size() - kObjectsShown));
+  text += fmt::format("faces      {} triangles, {} quads, {} larger; traced as {} triangles and {} spheres\n",
+                      grouped(sum.faces[0]), grouped(sum.faces[1]), grouped(sum.faces[2]), grouped(sum.triangles),
+                      grouped(sum.spheres));
+  text += fmt::format("bounds     {}\n", text_of(summary.bounds));
+  text += fmt::format("materials  {}\n", text_of(summary.materials_in_use));
+  std::vector<std::string> lights;
+  for (const LightDescription& light : description.lights)
+    lights.push_back(fmt::format("{} ({})", light.name.empty() ? "unnamed" : light.name, kind_of(light)));
+  text += fmt::format("lights     {}\n", text_of(lights));
+  text += fmt::format("features   {}\n", text_of(summary.features));
+  const std::uint64_t film = film_bytes(description.image, options.channels);
+  text +=
+      fmt::format("memory     {} (arrays {}, intersector {} estimated, film {})\n",
+                  readable_bytes(summary.array_bytes + summary.intersector_bytes + film),
+                  readable_bytes(summary.array_bytes), readable_bytes(summary.intersector_bytes), readable_bytes(film));
+  return text;
+}
+
+}  // namespace
+
+int info_command(const Words& words) {
+  const std::optional<InfoOptions> options = parse_info_options(words);
+  if (!options) return kSuccess;
+  const Interruption interruption(nullptr);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(options->threads));
+  tbb::task_arena arena(options->threads);
+  try {
+    arena.execute([&] {
+      Warnings warnings;
+      SceneDescription description = load_scene(options->scene, warnings);
+      PrepareOptions prepare_options;
+      prepare_options.camera = options->scene.camera;
+      prepare_options.threads = options->threads;
+      prepare_options.stop = &interruption.stop();
+      prepare_options.build = false;
+      const Scene scene = prepare(std::move(description), prepare_options, warnings);
+      if (!options->quiet) print_warnings(warnings, true);
+      print_result(options->json ? info_json(scene, *options) : info_text(scene, *options));
+    });
+  } catch (const Error&) {
+    if (!interruption.stop()) throw;
+  }
+  return interruption.stop() ? kSignalBase + interruption.signal() : kSuccess;
+}
+
+}  // namespace raytree::app

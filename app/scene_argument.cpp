@@ -1,0 +1,189 @@
+#include "app/scene_argument.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <limits>
+
+#include "app/suggestion.h"
+#include "geometry/mesh_file.h"
+#include "renderer/builtin_scenes.h"
+#include "renderer/mesh_scene.h"
+#include "renderer/scene_reader.h"
+
+namespace raytree::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lower_extension(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+std::vector<std::string> builtin_names() {
+  std::vector<std::string> names;
+  for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
+  return names;
+}
+
+[[noreturn]] void throw_unknown_scene(const std::string& name) {
+  const std::vector<std::string> builtin = builtin_names();
+  const std::string extension = lower_extension(name);
+  if (extension != ".json" && extension != ".obj" && extension != ".ply" && name.find('/') == std::string::npos)
+    throw usage_error(fmt::format("scene \"{}\" is neither a file nor a built-in scene{}; built-in scenes: {}", name,
+                                  did_you_mean(name, builtin), joined(builtin)));
+  // A file was meant: the nearest name in its folder may be the right one.
+  const fs::path path(name);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code code;
+  if (!fs::is_directory(folder, code))
+    throw Error(ErrorKind::bad_input, {name, 0, ""},
+                fmt::format("no such file; there is no folder {}", folder.string()));
+  std::vector<std::string> neighbours;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code))
+    neighbours.push_back(entry->path().filename().string());
+  std::sort(neighbours.begin(), neighbours.end());  // folders list in any order, messages do not
+  throw Error(ErrorKind::bad_input, {name, 0, ""},
+              fmt::format("no such file{}", did_you_mean(path.filename().string(), neighbours)));
+}
+
+struct Assignment {
+  std::string path, value;
+};
+
+Assignment parse_assignment(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw usage_error(fmt::format(
+        "--set: \"{}\" is not PATH=VALUE, for example render.depth=12 or materials.glass.index_of_refraction=1.33",
+        text));
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+/// As set_scene_value(), with the flag as the place that messages point to.
+void set_value(SceneDescription& scene, const std::string& flag, const std::string& path, const std::string& value) {
+  try {
+    set_scene_value(scene, path, value);
+  } catch (const Error& error) {
+    throw Error(error.kind(), {}, flag + ": " + error.what());
+  }
+}
+
+void set_image_size(SceneDescription& scene, const std::string& size) {
+  const ImageSize wanted = parse_size("--size", size);
+  set_value(scene, "--size", "image.width", std::to_string(wanted.width));
+  set_value(scene, "--size", "image.height", std::to_string(wanted.height));
+}
+
+/// The image that a bare mesh's camera is fitted to: the default one with the flags' changes.
+ImageDescription wanted_image(const SceneFlags& flags) {
+  SceneDescription scene;
+  for (const std::string& text : flags.sets) {
+    const Assignment assignment = parse_assignment(text);
+    if (assignment.path.rfind("image.", 0) == 0) set_value(scene, "--set", assignment.path, assignment.value);
+  }
+  if (!flags.size.empty()) set_image_size(scene, flags.size);
+  return scene.image;
+}
+
+Antialiasing parse_antialiasing(const std::string& text) {
+  constexpr int kLargestGrid = 64;  // 4096 samples a pixel
+  if (text == "none") return {};
+  if (text.rfind("grid:", 0) == 0)
+    return {Antialiasing::Method::grid,
+            static_cast<int>(parse_integer("--antialias grid", text.substr(5), 1, kLargestGrid))};
+  throw usage_error(fmt::format("--antialias: \"{}\" is neither none nor grid:N (N x N samples a pixel)", text));
+}
+
+SceneDescription read_scene_argument(const SceneFlags& flags, Warnings& warnings) {
+  const std::string& name = flags.scene;
+  std::error_code code;
+  const fs::file_status status = fs::status(name, code);
+  if (!fs::exists(status)) {
+    const std::vector<std::string> builtin = builtin_names();
+    if (std::find(builtin.begin(), builtin.end(), name) == builtin.end()) throw_unknown_scene(name);
+    return builtin_scene(name);
+  }
+  if (fs::is_directory(status)) throw Error(ErrorKind::bad_input, {name, 0, ""}, "is a folder, not a scene");
+  if (is_mesh_file_name(name)) return mesh_scene(name, warnings, wanted_image(flags));
+  const std::string extension = lower_extension(name);
+  if (extension == ".gz") throw Error(ErrorKind::bad_input, {name, 0, ""}, "is compressed; unpack it first (gunzip)");
+  if (!extension.empty() && extension != ".json")
+    throw Error(ErrorKind::bad_input, {name, 0, ""},
+                "is no scene by its name: a scene file ends in .json, a mesh in .obj or .ply");
+  return read_scene_file(name);
+}
+
+}  // namespace
+
+ImageSize parse_size(const std::string& flag, const std::string& text) {
+  const std::size_t cross = text.find('x');
+  const auto most = static_cast<std::int64_t>(std::numeric_limits<int>::max());
+  const auto width = whole_number(text.substr(0, cross)),
+             height = whole_number(cross == std::string::npos ? std::string() : text.substr(cross + 1));
+  if (cross == std::string::npos || !width || !height || *width < 1 || *height < 1 || *width > most || *height > most)
+    throw usage_error(fmt::format("{}: \"{}\" is not WxH in pixels, for example 1920x1080", flag, text));
+  return {static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
+  command.add_option("--size", flags.size, "Image size in pixels")->type_name("WxH")->group("Scene");
+  command.add_option("--camera", flags.camera, "Camera by its name; default: the scene's first")
+      ->type_name("NAME")
+      ->group("Scene");
+  command.add_option("--set", flags.sets, "Set any value of the scene, e.g. render.depth=12; repeatable")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false)
+      ->group("Scene");
+  if (!tracing) return;
+  command.add_option("--depth", flags.depth, "Levels of the ray tree; the eye ray is level 1")
+      ->type_name("N")
+      ->group("Tracing");
+  command
+      .add_option("--cutoff", flags.cutoff,
+                  "Largest radiance that cutting branches may take from a sample; 0: cut none")
+      ->type_name("X")
+      ->group("Tracing");
+  command.add_option("--antialias", flags.antialias, "none, or grid:N for N x N samples a pixel")
+      ->type_name("METHOD")
+      ->group("Tracing");
+}
+
+void check_scene_flags(const SceneFlags& flags) {
+  if (flags.scene.empty())
+    throw usage_error("no scene: give a scene file (.json), a mesh (.obj, .ply) or a built-in scene: " +
+                      joined(builtin_names()));
+  if (!flags.size.empty()) parse_size("--size", flags.size);
+  for (const std::string& text : flags.sets) parse_assignment(text);
+  if (!flags.depth.empty()) parse_integer("--depth", flags.depth, 1, std::numeric_limits<int>::max());
+  if (!flags.cutoff.empty() && parse_real("--cutoff", flags.cutoff) < 0)
+    throw usage_error(fmt::format("--cutoff: {} is negative; 0 cuts nothing", flags.cutoff));
+  if (!flags.antialias.empty()) parse_antialiasing(flags.antialias);
+}
+
+SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
+  SceneDescription scene = read_scene_argument(flags, warnings);
+  for (const std::string& text : flags.sets) {
+    const Assignment assignment = parse_assignment(text);
+    set_value(scene, "--set", assignment.path, assignment.value);
+  }
+  if (!flags.size.empty()) set_image_size(scene, flags.size);
+  if (!flags.depth.empty()) set_value(scene, "--depth", "render.depth", flags.depth);
+  if (!flags.cutoff.empty()) scene.render.cutoff = parse_real("--cutoff", flags.cutoff);
+  if (!flags.antialias.empty()) scene.render.antialias = parse_antialiasing(flags.antialias);
+  if (!flags.camera.empty()) {
+    std::vector<std::string> names;
+    for (const CameraDescription& camera : scene.cameras) names.push_back(camera.name);
+    if (std::find(names.begin(), names.end(), flags.camera) == names.end())
+      throw usage_error(fmt::format("--camera: no camera \"{}\" in {}{}; cameras: {}", flags.camera, flags.scene,
+                                    did_you_mean(flags.camera, names), joined(names)));
+  }
+  return scene;
+}
+
+}  // namespace raytree::app

@@ -1,0 +1,42 @@
+// The SCENE argument: a scene file, a bare mesh, or the name of a built-in scene, and what flags change in it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/usage.h"
+#include "renderer/scene_description.h"
+
+namespace CLI {
+class App;
+}
+
+namespace raytree::app {
+
+/// Flags that change the scene before it is prepared; `render` and `info` share them.
+struct SceneFlags {
+  std::string scene;              ///< the positional argument
+  std::string size;               ///< WxH
+  std::string camera;             ///< name
+  std::vector<std::string> sets;  ///< PATH=VALUE
+  std::string depth, cutoff, antialias;
+};
+
+/// Adds --size, --camera and --set; with `tracing` also --depth, --cutoff and --antialias.
+void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing);
+
+/// Throws Error (bad_input) for whatever can be said of the flags without the scene.
+void check_scene_flags(const SceneFlags& flags);
+
+/// Reads or makes the scene and applies --set in the order given, then the other flags. A bare mesh is read here; the
+/// meshes that a scene file names are not. Throws Error.
+SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings);
+
+struct ImageSize {
+  int width = 0, height = 0;
+};
+/// "WxH".
+ImageSize parse_size(const std::string& flag, const std::string& text);
+
+}  // namespace raytree::app

@@ -1,0 +1,535 @@
+// The program from outside: exit statuses, streams, every flag, wrong input, interruption, and the documentation that
+// names each flag.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstring>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+
+#include "renderer/builtin_scenes.h"
+#include "renderer/image_file.h"
+#include "tests/app/program.h"
+
+namespace raytree::test {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::vector<std::string> kCommandNames = {"render", "info", "scenes", "schema", "ocio"};
+const char* const kScene = "spheres-1980";
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+/// A small render of a built-in scene into `file`.
+std::vector<std::string> small_render(const std::string& file) {
+  return {"render", kScene, "-o", file, "--size", "64x48"};
+}
+
+/// Bad input: status 2, nothing on standard output, one error line that holds every part.
+void expect_bad_input(const std::vector<std::string>& arguments, const std::vector<std::string>& parts) {
+  const ProgramResult result = run_program(arguments);
+  std::string line;
+  for (const std::string& argument : arguments) line += argument + " ";
+  EXPECT_EQ(result.status, 2) << line << "\n" << result.err;
+  EXPECT_EQ(result.out, "") << line;
+  EXPECT_EQ(result.err.rfind("raytree: error: ", 0), 0u) << line << "\n" << result.err;
+  for (const std::string& part : parts) EXPECT_TRUE(contains(result.err, part)) << line << "\n" << result.err;
+}
+
+// --- help, version, documentation ---------------------------------------------------------------------------
+
+std::set<std::string> flags_in(const std::string& text) {
+  std::set<std::string> flags;
+  const std::regex flag("(^|[\\s,`(|\\[])(--[a-z][a-z-]*|-[a-z])\\b");
+  for (std::sregex_iterator match(text.begin(), text.end(), flag), end; match != end; ++match)
+    flags.insert((*match)[2].str());
+  return flags;
+}
+
+/// The part of the documentation under "## raytree NAME".
+std::string documentation_of(const std::string& command) {
+  const std::string text = file_text(RAYTREE_SOURCE_DIR "/docs/command-line.md");
+  const std::size_t begin = text.find("## raytree " + command + "\n");
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find("\n## ", begin + 1) - begin);
+}
+
+TEST(CommandLineHelp, EveryFlagIsDocumentedAndEveryDocumentedFlagExists) {
+  for (const std::string& command : kCommandNames) {
+    const ProgramResult help = run_program({command, "--help"});
+    ASSERT_EQ(help.status, 0) << help.err;
+    EXPECT_EQ(help.err, "");
+    // Flags stand in the first column of both; examples in running text may name those of other commands.
+    std::set<std::string> in_help, in_documentation;
+    const auto collect = [](const std::string& text, const std::string& pattern, std::set<std::string>& flags) {
+      const std::regex line_start(pattern);
+      std::istringstream lines(text);
+      for (std::string line; std::getline(lines, line);) {
+        std::smatch head;
+        if (std::regex_search(line, head, line_start)) flags.merge(flags_in(head.str()));
+      }
+    };
+    collect(help.out, "^  +-[^ ]+", in_help);
+    collect(documentation_of(command), "^\\| `-[^|]*\\|", in_documentation);
+    EXPECT_TRUE(in_help.count("--help")) << help.out;
+    EXPECT_EQ(in_help, in_documentation) << command;
+  }
+}
+
+TEST(CommandLineHelp, RenderHasEveryFlagPromised) {
+  const std::string help = run_program({"render", "--help"}).out;
+  for (const char* flag :
+       {"-o",         "--size",     "--crop",    "--threads",  "--depth", "--cutoff",  "--antialias", "--camera",
+        "--set",      "--channels", "--half",    "--exposure", "--ocio",  "--display", "--view",      "--stats",
+        "--progress", "--quiet",    "--verbose", "--version",  "--help",  "--format"})
+    EXPECT_TRUE(flags_in(help).count(flag)) << flag;
+}
+
+TEST(CommandLineHelp, GeneralHelpListsEveryCommand) {
+  const ProgramResult help = run_program({"--help"});
+  EXPECT_EQ(help.status, 0);
+  for (const std::string& command : kCommandNames) EXPECT_TRUE(contains(help.out, "\n  " + command)) << command;
+  const ProgramResult bare = run_program({});
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_EQ(bare.out, "");
+  EXPECT_TRUE(contains(bare.err, "Usage: raytree"));
+}
+
+TEST(CommandLineHelp, VersionFromTheProgramAndFromEachCommand) {
+  const ProgramResult version = run_program({"--version"});
+  EXPECT_EQ(version.status, 0);
+  EXPECT_TRUE(std::regex_match(version.out, std::regex("raytree [0-9]+\\.[0-9]+\\.[0-9]+ \\(.*\\)\n"))) << version.out;
+  for (const std::string& command : kCommandNames) EXPECT_EQ(run_program({command, "--version"}).out, version.out);
+}
+
+// --- wrong input --------------------------------------------------------------------------------------------
+
+TEST(CommandLineErrors, UnknownWordsAreNamedWithWhatWouldBeRight) {
+  TemporaryFolder folder;
+  const std::string png = folder.path("a.png");
+  expect_bad_input({"rendr", kScene}, {"\"rendr\"", "did you mean render?", "info, scenes, schema, ocio"});
+  expect_bad_input({"--verison"}, {"--verison", "--version"});
+  expect_bad_input(with(small_render(png), {"--thread", "2"}), {"unknown flag --thread;", "did you mean --threads?"});
+  expect_bad_input(with(small_render(png), {"--exposur=1"}), {"unknown flag --exposur;", "--exposure"});
+  expect_bad_input({"scenes", "--jsno"}, {"--jsno", "--json"});
+  expect_bad_input({"schema", "more"}, {"unexpected argument \"more\""});
+  expect_bad_input({"ocio"}, {"list, check"});
+  expect_bad_input({"ocio", "chek"}, {"\"chek\"", "did you mean check?"});
+  expect_bad_input({"render", "spheres-1908", "-o", png},
+                   {"spheres-1908", "did you mean spheres-1980?", "built-in scenes: "});
+  expect_bad_input({"info", "no/such/folder/scene.json"}, {"no/such/folder/scene.json", "no such file", "no folder"});
+  expect_bad_input({"render", kScene, "more.json", "-o", png}, {"unexpected argument \"more.json\"", kScene});
+  expect_bad_input({"render", kScene, png}, {"follows -o"});
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(CommandLineErrors, ValuesOutOfPlaceNameTheFlagAndTheForm) {
+  TemporaryFolder folder;
+  const std::string png = folder.path("a.png"), exr = folder.path("a.exr");
+  const auto wrong = [&](const std::vector<std::string>& flags, const std::vector<std::string>& parts) {
+    expect_bad_input(with({"render", kScene, "-o", png, "-o", exr}, flags), parts);
+  };
+  for (const char* size : {"64", "x", "64x", "64x0", "-4x4", "64x48x2", "6.5x4", "99999999999999999999x1", "64*48"})
+    wrong({"--size", size}, {"--size", size});
+  for (const char* crop : {"8x8", "8x8+1", "8x8+1+-1", "0x8+0+0", "8x8+a+0", "8x8+0+0+0"})
+    wrong({"--crop", crop}, {"--crop", crop});
+  for (const char* threads : {"0", "1025", "-1", "two", "1.5", ""}) wrong({"--threads", threads}, {"--threads"});
+  for (const char* depth : {"0", "-3", "x"}) wrong({"--depth", depth}, {"--depth"});
+  for (const char* cutoff : {"-1", "nan", "inf", "x"}) wrong({"--cutoff", cutoff}, {"--cutoff"});
+  for (const char* method : {"grid", "grid:", "grid:0", "grid:x", "grid:100000", "corner"})
+    wrong({"--antialias", method}, {"--antialias"});
+  wrong({"--exposure", "bright"}, {"--exposure", "bright"});
+  wrong({"--channels", "color,dept"}, {"--channels", "\"dept\"", "did you mean depth?", "truncation, all"});
+  wrong({"--channels", "color,"}, {"--channels", "\"\""});
+  wrong({"--progress", "loud"}, {"--progress", "auto, bar, plain, none"});
+  wrong({"--set", "render.depth"}, {"--set", "PATH=VALUE"});
+  wrong({"--set", "=3"}, {"--set"});
+  wrong({"--set", "render.deepth=3"}, {"--set", "deepth"});
+  wrong({"--camera", "nobody"}, {"--camera", "nobody", "cameras: "});
+  wrong({"--display", "Hercules"}, {"Hercules", "sRGB"});
+  wrong({"--view", "Sideways"}, {"Sideways", "Standard"});
+  wrong({"--ocio", folder.path("none.ocio")}, {"none.ocio"});
+  wrong({"--quiet", "--verbose"}, {"--quiet"});
+  wrong({"--size"}, {"--size"});
+  wrong({"--size", "64x48", "--crop", "8x8+60+0"}, {"--crop", "64 x 48"});
+  wrong({"--size", "64x48", "--crop", "8x8+2147483647+2147483647"}, {"--crop"});
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(CommandLineErrors, OutputsAreCheckedBeforeAnythingIsRead) {
+  TemporaryFolder folder;
+  // The scene does not exist either: what is said of the output shows that it came first.
+  const auto wrong = [](const std::vector<std::string>& flags, const std::vector<std::string>& parts) {
+    expect_bad_input(with({"render", "no-such-scene"}, flags), parts);
+  };
+  wrong({}, {"-o"});
+  wrong({"-o", folder.path("a.gif")}, {"a.gif", "png"});
+  wrong({"-o", folder.path("a")}, {"png"});
+  wrong({"-o", folder.path("no/a.png")}, {"no/a.png", "no folder"});
+  wrong({"-o", "-"}, {"--format"});
+  wrong({"-o", "-", "--format", "gif"}, {"gif", "exr, png, jpeg, tiff"});
+  wrong({"-o", folder.path("a.png"), "--format", "png"}, {"--format"});
+  wrong({"-o", folder.path("a.png"), "-o", folder.path("a.png")}, {"twice"});
+  wrong({"-o", folder.path("a.png"), "--stats", folder.path("no/s.json")}, {"no/s.json"});
+  wrong({"-o", "-", "--format", "png", "--stats", "-"}, {"--stats"});
+  std::filesystem::create_directory(folder.path("folder.png"));
+  wrong({"-o", folder.path("folder.png")}, {"is a folder"});
+}
+
+TEST(CommandLineErrors, ScenesThatAreNone) {
+  TemporaryFolder folder;
+  write_text(folder.path("model.stl"), "solid");
+  write_text(folder.path("model.ply.gz"), "x");
+  write_text(folder.path("broken.json"), "{\n  \"raytree\": 1,\n  \"colour\": 3\n}\n");
+  write_text(folder.path("empty.obj"), "");
+  expect_bad_input({"info", folder.path("model.stl")}, {"model.stl", ".json", ".obj", ".ply"});
+  expect_bad_input({"info", folder.path("model.ply.gz")}, {"unpack"});
+  expect_bad_input({"info", folder.path("modle.stl.json")}, {"no such file"});
+  expect_bad_input({"info", folder.path("broken.json")}, {"broken.json:3", "colour"});
+  expect_bad_input({"info", folder.path("brokn.json")}, {"did you mean broken.json?"});
+  expect_bad_input({"info", folder.path("empty.obj")}, {"empty.obj"});
+  expect_bad_input({"info", folder.path("")}, {"folder"});
+}
+
+TEST(CommandLineErrors, AClosedStandardOutputIsAFailure) {
+  ProgramOptions closed;
+  closed.close_stdout = true;
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--help"}, {"scenes"}, {"schema"}, {"info", kScene}}) {
+    const ProgramResult result = run_program(words, closed);
+    EXPECT_EQ(result.status, 1) << words.front() << result.err;
+    EXPECT_TRUE(contains(result.err, "standard output")) << result.err;
+  }
+}
+
+// --- commands that print ------------------------------------------------------------------------------------
+
+TEST(CommandLineLists, ScenesAsTextAndJson) {
+  const ProgramResult text = run_program({"scenes"});
+  EXPECT_EQ(text.status, 0);
+  EXPECT_EQ(text.err, "");
+  const Json list = Json::parse(run_program({"scenes", "--json"}).out);
+  ASSERT_EQ(list.size(), builtin_scenes().size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    EXPECT_EQ(list[i]["name"], builtin_scenes()[i].name);
+    EXPECT_TRUE(contains(text.out, builtin_scenes()[i].name));
+    EXPECT_TRUE(contains(text.out, builtin_scenes()[i].summary));
+  }
+}
+
+TEST(CommandLineLists, SchemaIsJson) {
+  const ProgramResult result = run_program({"schema"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_TRUE(Json::parse(result.out).contains("$schema"));
+}
+
+TEST(CommandLineLists, OcioListsAndChecksTheBuiltInConfig) {
+  const ProgramResult list = run_program({"ocio", "list", "--ocio", "builtin"});
+  EXPECT_EQ(list.status, 0) << list.err;
+  for (const char* part : {"sRGB", "CRT", "Standard", "Shade as brightness", "Raw", "(default)"})
+    EXPECT_TRUE(contains(list.out, part)) << part << "\n" << list.out;
+  const ProgramResult check = run_program({"ocio", "check"});
+  EXPECT_EQ(check.status, 0) << check.out;
+  for (const char* value : {"0.461356", "0.735357", "0.567858", "0.795536", "0.287607", "0.467735", "0.218776"})
+    EXPECT_TRUE(contains(check.out, value)) << value << "\n" << check.out;
+  EXPECT_FALSE(contains(check.out, "OFF"));
+  EXPECT_EQ(run_program({"ocio", "check", "--ocio", "builtin"}).status, 0);
+}
+
+TEST(CommandLineInfo, SaysWhatIsInAScene) {
+  TemporaryFolder folder;
+  // A cube's six quads.
+  write_text(folder.path("cube.obj"),
+             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+             "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const ProgramResult text = run_program({"info", folder.path("cube.obj")});
+  ASSERT_EQ(text.status, 0) << text.err;
+  for (const char* part : {"objects    2", "clay", "ground", "key (directional)", "memory"})
+    EXPECT_TRUE(contains(text.out, part)) << part << "\n" << text.out;
+
+  const ProgramResult result = run_program({"info", folder.path("cube.obj"), "--json", "--size", "100x50"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json info = Json::parse(result.out);
+  EXPECT_EQ(info["image"]["width"], 100);
+  EXPECT_EQ(info["totals"]["faces"]["quads"], 6);
+  EXPECT_EQ(info["totals"]["faces"]["triangles"], 0);
+  EXPECT_EQ(info["totals"]["faces"]["larger"], 0);
+  EXPECT_GE(info["totals"]["traced_triangles"], 12);
+  EXPECT_EQ(info["objects"][0]["bounds"]["max"], Json({1.0, 1.0, 1.0}));
+  EXPECT_EQ(info["objects"].size(), 2u);
+  EXPECT_EQ(info["lights"].size(), 2u);
+  EXPECT_EQ(info["materials_in_use"].size(), 2u);
+  EXPECT_FALSE(info["features"].empty());
+  // Color and alpha: four planes of floats.
+  EXPECT_EQ(info["memory_bytes"]["film"], 4 * 4 * 100 * 50);
+  EXPECT_GT(info["memory_bytes"]["arrays"], 0);
+}
+
+// --- rendering ----------------------------------------------------------------------------------------------
+
+TEST(CommandLineRender, WritesEveryFormatFromOneRender) {
+  TemporaryFolder folder;
+  const std::vector<std::string> names = {"a.exr", "b.jpg", "c.png", "d.tif"};
+  // Names that follow the first one of -o belong to it too.
+  const ProgramResult result = run_program({"render", kScene, "--size", "64x48", "-o", folder.path("a.exr"),
+                                            folder.path("b.jpg"), "-o", folder.path("c.png"), folder.path("d.tif")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(folder.names(), names);
+  for (const std::string& name : names) {
+    const DecodedImage image = read_image_file(folder.path(name));
+    EXPECT_EQ(image.width, 64) << name;
+    EXPECT_EQ(image.height, 48) << name;
+    EXPECT_EQ(image.names.size(), name == "a.exr" ? 4u : 3u) << name;
+  }
+  // Both orders of SCENE and -o.
+  EXPECT_EQ(run_program({"render", "-o", folder.path("c.png"), "--size", "64x48", kScene}).status, 0);
+}
+
+TEST(CommandLineRender, StandardOutputCarriesThePictureAlone) {
+  TemporaryFolder folder;
+  const ProgramResult file = run_program(small_render(folder.path("a.png")));
+  ASSERT_EQ(file.status, 0) << file.err;
+  const ProgramResult stream = run_program(with(small_render("-"), {"--format", "png"}));
+  ASSERT_EQ(stream.status, 0) << stream.err;
+  EXPECT_EQ(stream.out, file_text(folder.path("a.png")));
+  ProgramOptions closed;
+  closed.close_stdout = true;
+  EXPECT_EQ(run_program(with(small_render("-"), {"--format", "png"}), closed).status, 1);
+}
+
+TEST(CommandLineRender, FilesDoNotDependOnThreads) {
+  TemporaryFolder folder;
+  std::string first[2];
+  for (const char* threads : {"1", "2", "3", "7"}) {
+    const std::string exr = folder.path("a.exr"), png = folder.path("a.png");
+    const ProgramResult result =
+        run_program(with(small_render(exr), {"-o", png, "--channels", "all", "--threads", threads}));
+    ASSERT_EQ(result.status, 0) << result.err;
+    for (const int i : {0, 1}) {
+      const std::string bytes = file_text(i ? png : exr);
+      if (first[i].empty()) first[i] = bytes;
+      EXPECT_TRUE(bytes == first[i]) << threads << " threads, " << (i ? "PNG" : "EXR");
+    }
+  }
+}
+
+TEST(CommandLineRender, ACropIsItsWindowOfTheFrame) {
+  TemporaryFolder folder;
+  for (const char* name : {"a.exr", "a.png"}) {
+    const std::string full_path = folder.path(std::string("full_") + name);
+    const std::string crop_path = folder.path(std::string("crop_") + name);
+    ASSERT_EQ(run_program({"render", kScene, "--size", "97x61", "-o", full_path}).status, 0);
+    ASSERT_EQ(run_program({"render", kScene, "--size", "97x61", "--crop", "37x29+41+17", "-o", crop_path}).status, 0);
+    const DecodedImage full = read_image_file(full_path), crop = read_image_file(crop_path);
+    ASSERT_EQ(crop.width, 37);
+    ASSERT_EQ(crop.height, 29);
+    ASSERT_EQ(crop.names, full.names);
+    std::size_t different = 0;
+    for (std::size_t plane = 0; plane < crop.planes.size(); ++plane)
+      for (int y = 0; y < 29; ++y)
+        for (int x = 0; x < 37; ++x) {
+          const float a = crop.planes[plane][static_cast<std::size_t>(y * 37 + x)];
+          const float b = full.planes[plane][static_cast<std::size_t>((y + 17) * 97 + x + 41)];
+          different += std::memcmp(&a, &b, sizeof a) != 0;
+        }
+    EXPECT_EQ(different, 0u) << name;
+  }
+}
+
+TEST(CommandLineRender, FlagsReachTheRender) {
+  TemporaryFolder folder;
+  const auto render = [&](const std::vector<std::string>& flags) {
+    const ProgramResult result =
+        run_program(with(small_render(folder.path("a.png")), with({"--stats", "-", "--quiet"}, flags)));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.status == 0 ? Json::parse(result.out) : Json();
+  };
+  const Json plain = render({"--antialias", "none"});
+  EXPECT_EQ(plain["samples"], 64 * 48);
+  const Json grid = render({"--antialias", "grid:3"});
+  EXPECT_EQ(grid["samples"], 9 * 64 * 48);
+  EXPECT_EQ(grid["settings"]["antialias"], "grid:3");
+  const Json shallow = render({"--depth", "1"});
+  EXPECT_EQ(shallow["rays"]["reflected"], 0);
+  EXPECT_EQ(shallow["rays"]["refracted"], 0);
+  EXPECT_EQ(shallow["counts"]["deepest_level"], 1);
+  EXPECT_EQ(render({"--set", "render.depth=1"})["settings"]["depth"], 1);
+  // A flag made for the purpose wins over --set.
+  EXPECT_EQ(render({"--depth", "2", "--set", "render.depth=1"})["settings"]["depth"], 2);
+  EXPECT_EQ(render({"--cutoff", "0"})["counts"]["branches_cut"], 0);
+  EXPECT_EQ(render({"--cutoff", "0.25"})["settings"]["cutoff"], 0.25);
+  EXPECT_EQ(render({"--threads", "3"})["settings"]["threads"], 3);
+  EXPECT_EQ(render({"--crop", "8x4+16+2"})["settings"]["window"], Json({16, 2, 8, 4}));
+}
+
+TEST(CommandLineRender, ExposureDisplayAndViewReachTheFile) {
+  TemporaryFolder folder;
+  const auto mean = [&](const std::vector<std::string>& flags) {
+    const std::string path = folder.path("a.png");
+    const ProgramResult result = run_program(with(small_render(path), with({"--ocio", "builtin"}, flags)));
+    EXPECT_EQ(result.status, 0) << result.err;
+    const DecodedImage image = read_image_file(path);
+    double sum = 0;
+    for (const auto& plane : image.planes)
+      for (const float value : plane) sum += value;
+    return sum;
+  };
+  const double standard = mean({});
+  EXPECT_GT(mean({"--exposure", "1"}), standard);
+  EXPECT_LT(mean({"--exposure", "-1.5"}), standard);
+  EXPECT_NE(mean({"--display", "CRT"}), standard);
+  EXPECT_NE(mean({"--display", "CRT", "--view", "Shade as brightness"}), mean({"--display", "CRT"}));
+  const DecodedImage image = read_image_file(folder.path("a.png"));
+  std::string metadata;
+  for (const auto& [name, value] : image.metadata) metadata += name + "=" + value + "\n";
+  for (const char* part : {"Raytree ", kScene, "CRT", "\"depth\""})
+    EXPECT_TRUE(contains(metadata, part)) << part << "\n" << metadata;
+}
+
+TEST(CommandLineRender, ChannelsAndHalf) {
+  TemporaryFolder folder;
+  const std::string path = folder.path("a.exr");
+  ASSERT_EQ(run_program(with(small_render(path), {"--channels", "color,depth,object_id"})).status, 0);
+  DecodedImage image = read_image_file(path);
+  EXPECT_EQ(std::set<std::string>(image.names.begin(), image.names.end()),
+            (std::set<std::string>{"R", "G", "B", "Z", "id.object"}));
+  const auto full_size = std::filesystem::file_size(path);
+  ASSERT_EQ(run_program(with(small_render(path), {"--channels", "all", "--half"})).status, 0);
+  image = read_image_file(path);
+  std::size_t planes = 0;
+  for (int i = 0; i < kChannelGroupCount; ++i) planes += plane_names(static_cast<ChannelGroup>(i)).size();
+  EXPECT_EQ(image.names.size(), planes);
+  ASSERT_EQ(run_program(with(small_render(path), {"--channels", "color,depth,object_id", "--half"})).status, 0);
+  EXPECT_LT(std::filesystem::file_size(path), full_size);
+}
+
+TEST(CommandLineRender, StatisticsHaveTheDocumentedKeys) {
+  TemporaryFolder folder;
+  const ProgramResult result =
+      run_program(with(small_render(folder.path("a.exr")), {"--stats", folder.path("s.json")}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.exr", "s.json"}));
+  const Json json = Json::parse(file_text(folder.path("s.json")));
+  const std::string documentation = documentation_of("render");
+  const std::function<void(const Json&, const std::string&)> visit = [&](const Json& value, const std::string& name) {
+    EXPECT_TRUE(name.empty() || contains(documentation, "`" + name + "`")) << name;
+    if (value.is_object())
+      for (const auto& [key, part] : value.items()) visit(part, name.empty() ? key : name + "." + key);
+  };
+  visit(json, "");
+  EXPECT_EQ(json["rays"]["primary"], json["samples"]);
+  EXPECT_EQ(json["rays"]["total"].get<std::uint64_t>(),
+            json["rays"]["primary"].get<std::uint64_t>() + json["rays"]["shadow"].get<std::uint64_t>() +
+                json["rays"]["reflected"].get<std::uint64_t>() + json["rays"]["refracted"].get<std::uint64_t>());
+  double split = 0;
+  for (const auto& part : json["time_split_percent"]) split += part.get<double>();
+  EXPECT_NEAR(split, 100, 1e-6);
+  EXPECT_GT(json["memory_bytes"]["peak"], json["memory_bytes"]["film"]);
+  EXPECT_EQ(json["files"], Json({folder.path("a.exr")}));
+}
+
+TEST(CommandLineRender, MessagesGoToStandardErrorAndQuietSilencesThem) {
+  TemporaryFolder folder;
+  const std::string path = folder.path("a.png");
+  const ProgramResult quiet = run_program(with(small_render(path), {"--quiet"}));
+  EXPECT_EQ(quiet.status, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  const ProgramResult verbose = run_program(with(small_render(path), {"--verbose"}));
+  EXPECT_EQ(verbose.out, "");
+  for (const char* part : {"phases", "Mrays/s", "overhead", "intersection", "shading", "peak", "not finite"})
+    EXPECT_TRUE(contains(verbose.err, part)) << part << "\n" << verbose.err;
+  const ProgramResult odd = run_program(with(small_render(path), {"--half"}));
+  EXPECT_EQ(odd.status, 0);
+  EXPECT_TRUE(contains(odd.err, "warning: --half")) << odd.err;
+  EXPECT_FALSE(contains(run_program(with(small_render(path), {"--half", "--quiet"})).err, "warning"));
+}
+
+TEST(CommandLineRender, ProgressIsALinePerFivePercentOffATerminal) {
+  TemporaryFolder folder;
+  const std::vector<std::string> words = {"render", kScene, "-o", folder.path("a.png"), "--size", "640x640"};
+  const std::regex line("tracing +[0-9]+ %  [0-9.]+ Mrays/s");
+  const auto lines = [&](const std::string& mode) {
+    const std::string err = run_program(with(words, {"--progress", mode})).err;
+    return std::distance(std::sregex_iterator(err.begin(), err.end(), line), std::sregex_iterator());
+  };
+  // 400 tiles: every twentieth is told.
+  EXPECT_EQ(lines("auto"), 20);
+  EXPECT_EQ(lines("plain"), 20);
+  EXPECT_EQ(lines("none"), 0);
+  const std::string bar = run_program(with(words, {"--progress", "bar"})).err;
+  EXPECT_TRUE(contains(bar, "\r")) << bar;
+  EXPECT_EQ(bar.back(), '\n');  // the line that says what was written follows the bar, which is taken away
+}
+
+TEST(CommandLineRender, AnUnknownSceneLeavesAnEarlierFileAlone) {
+  TemporaryFolder folder;
+  write_text(folder.path("a.png"), "earlier");
+  EXPECT_EQ(run_program({"render", "no-such-scene", "-o", folder.path("a.png")}).status, 2);
+  EXPECT_EQ(file_text(folder.path("a.png")), "earlier");
+}
+
+TEST(CommandLineRender, ABareMeshFillsTheFrameOfTheSizeAskedFor) {
+  TemporaryFolder folder;
+  write_text(folder.path("slab.obj"),
+             "v -3 0 -1\nv 3 0 -1\nv 3 0 1\nv -3 0 1\nv 0 2 0\nf 1 4 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
+  for (const char* size : {"160x60", "60x160", "96x96"}) {
+    const std::string path = folder.path("a.exr");
+    const ProgramResult result =
+        run_program({"render", folder.path("slab.obj"), "-o", path, "--size", size, "--channels", "object_id"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const DecodedImage image = read_image_file(path);
+    int left = image.width, right = -1, top = image.height, bottom = -1;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        if (image.planes[0][static_cast<std::size_t>(y * image.width + x)] == 1) {
+          left = std::min(left, x), right = std::max(right, x);
+          top = std::min(top, y), bottom = std::max(bottom, y);
+        }
+    EXPECT_GT(left, 0) << size;
+    EXPECT_GT(top, 0) << size;
+    EXPECT_LT(right, image.width - 1) << size;
+    EXPECT_LT(bottom, image.height - 1) << size;
+    const double across = double(right - left + 1) / image.width, down = double(bottom - top + 1) / image.height;
+    EXPECT_GE(std::max(across, down), .8) << size;
+    EXPECT_LE(std::max(across, down), .96) << size;
+  }
+}
+
+// --- interruption -------------------------------------------------------------------------------------------
+
+class CommandLineInterruption : public testing::TestWithParam<int> {};
+
+TEST_P(CommandLineInterruption, StopsWithinASecondAndLeavesNothing) {
+  // Into the reading, the generating, the build and the tracing of a scene that takes much longer than that.
+  for (const double after : {0.05, 0.3, 0.8, 1.6}) {
+    for (const std::vector<std::string>& scene :
+         {std::vector<std::string>{"terrain", "--set", "shapes.terrain.triangles=20000000"},
+          {kScene, "--size", "4000x4000", "--antialias", "grid:4"}}) {
+      TemporaryFolder folder;
+      ProgramOptions options;
+      options.signal = GetParam();
+      options.signal_after = after;
+      const ProgramResult result =
+          run_program(with(with({"render"}, scene), {"-o", folder.path("a.exr"), "-o", folder.path("a.png")}), options);
+      EXPECT_EQ(result.status, 128 + GetParam()) << scene[0] << " after " << after << "\n" << result.err;
+      EXPECT_LT(result.seconds_after_signal, 1.0) << scene[0] << " after " << after;
+      EXPECT_TRUE(folder.names().empty()) << folder.names().front();
+      EXPECT_FALSE(contains(result.err, "error")) << result.err;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, CommandLineInterruption, testing::Values(SIGINT, SIGTERM),
+                         [](const auto& test) { return test.param == SIGINT ? "interrupt" : "terminate"; });
+
+}  // namespace
+}  // namespace raytree::test
