@@ -43,7 +43,7 @@ Figure idle_figure(const char* what, std::uint64_t with, std::uint64_t without) 
   Figure figure;
   figure.row = "idle";
   figure.what = what;
-  figure.unit = "%";
+  figure.unit = std::string("%");
   const double percent = 100 * (static_cast<double>(with) / static_cast<double>(without) - 1);
   figure.measured = {percent, percent, percent, without > 0 ? 1 : 0};
   figure.kind = BoundKind::at_most;

@@ -35,7 +35,7 @@ std::vector<Figure> measure_time_split(const MeasureContext& context) {
       Figure figure;
       figure.row = "split";
       figure.what = fmt::format("{} (Whitted 1980: {} %), {}, 1 thread", kNames[i], kPaper[i], scene.description.name);
-      figure.unit = "%";
+      figure.unit = std::string("%");
       figure.measured = spread_of(parts[i]);
       figures.push_back(figure);
     }

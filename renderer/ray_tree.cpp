@@ -184,7 +184,7 @@ bool TileTracer::State::finish_chunk() {
     for (std::size_t i = 0; i < count; ++i) {
       const PendingRay& ray = contexts[i];
       rays.set(i, ray.origin, ray.direction, std::numeric_limits<float>::infinity());
-      if (counts_rays) ++ray_counts[ray.sample];
+      if (kFeatures.ray_count_channel && counts_rays) ++ray_counts[ray.sample];
     }
     rays.size = count;
     trace_batch(Coherence::incoherent, false);
@@ -196,11 +196,11 @@ bool TileTracer::State::finish_chunk() {
     } else {
       ++statistics.not_finite_samples;
     }
-    if (records_truncation) {
+    if (kFeatures.truncation_channel && records_truncation) {
       ColorSum& sum = truncation_sum[pixel];
       sum.r += truncation[i].r, sum.g += truncation[i].g, sum.b += truncation[i].b;
     }
-    if (counts_rays) ray_count_sum[pixel] += ray_counts[i];
+    if (kFeatures.ray_count_channel && counts_rays) ray_count_sum[pixel] += ray_counts[i];
   }
   chunk_size = 0;
   return !(options.stop != nullptr && options.stop->load(std::memory_order_relaxed));
@@ -243,7 +243,7 @@ void TileTracer::State::collect_hits(bool eye) {
     radiance[ray.sample] +=
         point.weight * scene.ambient *
         (material.ambient_as_diffuse ? point.shading.diffuse : material.ambient.at(point.shading.surface));
-    if (eye && records_first_hit) record_first_hit(point, hit, shape);
+    if (kFeatures.first_hit_channels && eye && records_first_hit) record_first_hit(point, hit, shape);
   }
 }
 
@@ -279,7 +279,7 @@ void TileTracer::State::add_lights() {
     statistics.rays[static_cast<int>(RayKind::shadow)] += count;
     for (std::size_t i = 0; i < count; ++i)
       if (!occluded[i]) radiance[shadow_samples[i]] += shadow_light[i];
-    if (counts_rays)
+    if (kFeatures.ray_count_channel && counts_rays)
       for (std::size_t i = 0; i < count; ++i) ++ray_counts[shadow_samples[i]];
   }
 }
@@ -316,7 +316,7 @@ void TileTracer::State::spawn() {
     for (int i = 0; i < 2; ++i) {
       if (!alive[i]) continue;
       if (cut[i]) {
-        truncation[point.sample] += bounds[i];
+        if (kFeatures.truncation_channel) truncation[point.sample] += bounds[i];
         ++statistics.branches_cut;
       } else {
         spawn_child(point, i == 0 ? children.reflected : children.refracted, weights[i], shares[i], i == 1);
