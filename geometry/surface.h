@@ -92,8 +92,8 @@ inline SurfacePoint triangle_surface(const TriangleMesh& mesh, const Hit& hit, b
                        (std::abs(plus.y) + std::abs(minus.y)) * reach.y +
                        (std::abs(plus.z) + std::abs(minus.z)) * reach.z;
   if (in_range)
-    point.clearance += std::min(kNormalError * turned * over_length,
-                                kMostNormalError * std::max(reach.x, std::max(reach.y, reach.z)));
+    point.clearance +=
+        std::min(kNormalError * turned * over_length, kMostNormalError * std::max(reach.x, std::max(reach.y, reach.z)));
   point.distance = hit.distance;
 
   point.shading_normal = point.geometric_normal;
@@ -104,7 +104,8 @@ inline SurfacePoint triangle_surface(const TriangleMesh& mesh, const Hit& hit, b
     const float square = mean.dot(mean);
     // Opposite vertex normals cancel (catalogue of failures: interpolated normal -> 0); the facet's own is always
     // there.
-    if (square > 1e-12f && square <= std::numeric_limits<float>::max()) point.shading_normal = mean * (1 / std::sqrt(square));
+    if (square > 1e-12f && square <= std::numeric_limits<float>::max())
+      point.shading_normal = mean * (1 / std::sqrt(square));
   }
   if (texture && !mesh.texture_coordinates.empty()) {
     const std::uint32_t* index =

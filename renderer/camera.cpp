@@ -11,6 +11,9 @@ namespace raytree {
 Camera::Camera(const CameraDescription& description, int width, int height, const Vec3d& scene_origin,
                const SourceLocation& where) {
   const Vec3d view = description.target - description.position;
+  for (int i = 0; i < 3; ++i)
+    if (!std::isfinite(description.position[i] + description.target[i] + description.up[i]))
+      throw Error(ErrorKind::bad_input, where, "camera position, target and up must be finite");
   if (!(view.dot(view) > 0)) throw Error(ErrorKind::bad_input, where, "camera target and position are the same point");
   const Vec3d forward = unit(view);
   const Vec3d side = forward.cross(description.up);
@@ -20,6 +23,10 @@ Camera::Camera(const CameraDescription& description, int width, int height, cons
   const Vec3d up = right.cross(forward);
 
   perspective_ = description.projection == CameraDescription::Projection::perspective;
+  if (perspective_ && !(description.field_of_view > 0 && description.field_of_view < 180))
+    throw Error(ErrorKind::bad_input, where, "camera field of view must lie between 0 and 180 degrees");
+  if (!perspective_ && !(description.height > 0 && std::isfinite(description.height)))
+    throw Error(ErrorKind::bad_input, where, "camera window height must be larger than 0");
   const double window_height =
       perspective_ ? 2 * std::tan(description.field_of_view * std::numbers::pi / 360) : description.height;
   const double pixel = window_height / height;

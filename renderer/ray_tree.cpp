@@ -228,8 +228,7 @@ void TileTracer::State::collect_hits(bool eye) {
     if (hits.geometry[i] == kNoGeometry) {
       // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
       const Vec3f poison = (ray.origin + ray.direction) * 0.0f;
-      radiance[ray.sample] +=
-          ray.weight * scene.background.along(ray.direction) + Rgb(poison.x + poison.y + poison.z);
+      radiance[ray.sample] += ray.weight * scene.background.along(ray.direction) + Rgb(poison.x + poison.y + poison.z);
       continue;
     }
     const Hit hit = hits[i];
@@ -363,9 +362,7 @@ void TileTracer::State::resolve_tile(int x0, int y0, int samples_per_pixel) {
             static_cast<float>(value((y - y0) * kTileSize + (x - x0)));
   };
   // Colors are judged sample by sample; what else may not be a number, since some input was not, becomes 0 here.
-  const auto finite = [](double value) {
-    return std::abs(value) <= std::numeric_limits<float>::max() ? value : 0.0;
-  };
+  const auto finite = [](double value) { return std::abs(value) <= std::numeric_limits<float>::max() ? value : 0.0; };
   const auto write_ids = [&](ChannelGroup group, auto&& value) {
     std::uint32_t* pixels = film.id_plane(group);
     for (int y = top; y < bottom; ++y)
@@ -400,8 +397,9 @@ void TileTracer::State::resolve_tile(int x0, int y0, int samples_per_pixel) {
       });
   if (channels.has(ChannelGroup::albedo))
     for (int c = 0; c < 3; ++c)
-      write(ChannelGroup::albedo, c,
-            [&](int i) { return first_hits[i].count > 0 ? finite(first_hits[i].albedo[c] / first_hits[i].count) : 0.0; });
+      write(ChannelGroup::albedo, c, [&](int i) {
+        return first_hits[i].count > 0 ? finite(first_hits[i].albedo[c] / first_hits[i].count) : 0.0;
+      });
   if (channels.has(ChannelGroup::object_id))
     write_ids(ChannelGroup::object_id, [&](int i) { return first_hits[i].object; });
   if (channels.has(ChannelGroup::material_id))

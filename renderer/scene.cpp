@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <set>
 
 #include "geometry/embree_intersector.h"
@@ -74,6 +75,15 @@ std::vector<std::string> features_in_use(const Scene& scene) {
   return {features.begin(), features.end()};
 }
 
+void check_light(const LightDescription& light, const SourceLocation& where) {
+  const auto* directional = std::get_if<DirectionalLight>(&light.kind);
+  const Vec3d place = directional != nullptr ? directional->direction : std::get<PointLight>(light.kind).position;
+  const double length = place.length();
+  if (!std::isfinite(length)) throw Error(ErrorKind::bad_input, where, "the light's place is not finite");
+  if (directional != nullptr && !(length > 0))
+    throw Error(ErrorKind::bad_input, where, "a directional light needs a direction");
+}
+
 void warn_of_open_glass(const Scene& scene, Warnings& warnings) {
   for (const MeshEntry& entry : scene.shapes->meshes) {
     if (!scene.materials[scene.shape_materials[entry.shape]].has_transmission) continue;
@@ -109,7 +119,10 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   const Vec3d origin = scene.shapes->origin;
 
   resolve_materials(scene.description, origin, scene);
-  for (const LightDescription& light : scene.description.lights) scene.lights.push_back(make_light(light, origin));
+  for (const LightDescription& light : scene.description.lights) {
+    check_light(light, {scene.description.name, 0, "lights." + light.name});
+    scene.lights.push_back(make_light(light, origin));
+  }
   scene.background = BackgroundLight(scene.description.background);
   scene.ambient = scene.description.ambient;
   scene.camera = Camera(camera, scene.description.image.width, scene.description.image.height, origin,

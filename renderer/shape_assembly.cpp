@@ -40,6 +40,33 @@ Vec3d transformed_normal(const Vec3d& normal, const Matrix44d& inverse_transpose
   return unit(transformed_vector(normal, inverse_transpose));
 }
 
+/// Embree's arithmetic holds up to such coordinates (the catalogue of its failures: distances go wrong from 1e15 on).
+constexpr double kLargestCoordinate = 1e12;
+
+bool is_within_reach(const Vec3d& v) {
+  // NaN fails every comparison.
+  return std::abs(v.x) <= kLargestCoordinate && std::abs(v.y) <= kLargestCoordinate &&
+         std::abs(v.z) <= kLargestCoordinate;
+}
+
+void require(bool holds, const char* message, const SourceLocation& where) {
+  if (!holds) throw Error(ErrorKind::bad_input, where, message);
+}
+
+void check_transform(const Matrix44d& m, const SourceLocation& where) {
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      require(std::isfinite(m[row][column]), "the transform holds a number that is not finite", where);
+}
+
+/// The unit normal of a plane or disc as its description has it, in the world.
+Vec3d checked_normal(const Vec3d& normal, const Matrix44d& transform, const SourceLocation& where) {
+  Vec3d world = transformed_vector(normal, transform.inverse().transposed());
+  const double length = world.length();
+  require(length > 0 && std::isfinite(length), "a normal needs a direction, and numbers that are finite", where);
+  return world / length;
+}
+
 bool mirrors(const Matrix44d& m) { return m.determinant() < 0; }
 
 /// The factor of a transform that scales all directions alike; throws for any other.
@@ -130,7 +157,11 @@ class Assembler {
   void add(ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.name = shape.name;
     summary.id = id + 1;
+    check_transform(shape.transform, shape.where);
     std::visit([&](auto& kind) { add_kind(kind, shape, id, summary); }, shape.kind);
+    if (!summary.bounds.isInfinite() && !summary.bounds.isEmpty())
+      require(is_within_reach(summary.bounds.min) && is_within_reach(summary.bounds.max),
+              "the shape reaches further than 1e12 units from the origin", shape.where);
   }
 
  private:
@@ -175,6 +206,7 @@ class Assembler {
     summary.spheres = 1;
     const Vec3d center = transformed_point(kind.center, shape.transform);
     const double radius = kind.radius * uniform_scale(shape.transform, "sphere", shape.where);
+    require(radius > 0, "a radius must be larger than 0", shape.where);
     summary.bounds = {center - Vec3d(radius), center + Vec3d(radius)};
     assembly.spheres.push_back({center, radius, id});
   }
@@ -196,8 +228,10 @@ class Assembler {
 
   void add_kind(PlaneShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "plane";
-    const Vec3d normal = transformed_normal(kind.normal, shape.transform.inverse().transposed());
+    const Vec3d normal = checked_normal(kind.normal, shape.transform, shape.where);
     summary.bounds.makeInfinite();
+    require(is_within_reach(transformed_point(kind.point, shape.transform)),
+            "the plane lies further than 1e12 units from the origin", shape.where);
     assembly.planes.push_back({transformed_point(kind.point, shape.transform), normal, id});
   }
 
@@ -205,8 +239,9 @@ class Assembler {
     summary.kind = "disc";
     const double scale = uniform_scale(shape.transform, "disc", shape.where);
     const Vec3d center = transformed_point(kind.center, shape.transform);
-    const Vec3d normal = transformed_normal(kind.normal, shape.transform.inverse().transposed());
+    const Vec3d normal = checked_normal(kind.normal, shape.transform, shape.where);
     const double radius = kind.radius * scale;
+    require(radius > 0, "a radius must be larger than 0", shape.where);
     const auto reach = [&](double n) { return radius * std::sqrt(std::max(0.0, 1 - n * n)); };
     const Vec3d half(reach(normal.x), reach(normal.y), reach(normal.z));
     summary.bounds = {center - half, center + half};

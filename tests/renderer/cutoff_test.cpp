@@ -65,13 +65,15 @@ class RandomScenes {
     for (int i = 0; i < shapes; ++i) {
       const int kind = integer(0, 3);
       if (kind == 0) scene.shapes.push_back(shape(SphereShape{point(3), uniform(0.3, 2)}, any_material()));
-      if (kind == 1) scene.shapes.push_back(shape(DiscShape{point(3), point(1) + Vec3d(0, 0, 2), uniform(0.5, 3)}, any_material()));
-      if (kind == 2) scene.shapes.push_back(shape(PlaneShape{point(3) - Vec3d(0, 0, 3), point(1) + Vec3d(0, 2, 0)}, any_material()));
+      if (kind == 1)
+        scene.shapes.push_back(shape(DiscShape{point(3), point(1) + Vec3d(0, 0, 2), uniform(0.5, 3)}, any_material()));
+      if (kind == 2)
+        scene.shapes.push_back(shape(PlaneShape{point(3) - Vec3d(0, 0, 3), point(1) + Vec3d(0, 2, 0)}, any_material()));
       if (kind == 3) {
         std::vector<Vec3f> corners;
         for (int c = 0; c < 12; ++c) corners.emplace_back(point(3));
-        scene.shapes.push_back(mesh_shape(triangles(corners, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}), any_material(),
-                                          NormalSource::flat));
+        scene.shapes.push_back(
+            mesh_shape(triangles(corners, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}), any_material(), NormalSource::flat));
       }
     }
     const int lights = integer(0, 3);
@@ -147,7 +149,8 @@ TEST(Cutoff, OfZeroCutsOnlyWhatCanBringNoLight) {
 }
 
 TEST(Cutoff, OnFacingMirrorsTakesNoMoreThanTheRestOfTheSeries) {
-  // I = E (1 + k + k^2 + ...): the exact remainder after level d is E k^d / (1 - k), of which the tree may lose epsilon.
+  // I = E (1 + k + k^2 + ...): the exact remainder after level d is E k^d / (1 - k), of which the tree may lose
+  // epsilon.
   const float k = 0.8f, e = 0.5f;
   SceneDescription scene = dark_scene(2, front_camera(1, 0.5));
   scene.ambient = Rgb(1);

@@ -42,8 +42,8 @@ TEST(RayTree, FacingMirrorsGiveTheGeometricSum) {
         weight *= Vec3d(k, k / 2, k / 4);
       }
       // A level rounds a few times: relative error grows with the depth.
-      expect_color(color_at(result.film, 2, 1), Rgb(static_cast<float>(expected.x), static_cast<float>(expected.y),
-                                                    static_cast<float>(expected.z)),
+      expect_color(color_at(result.film, 2, 1),
+                   Rgb(static_cast<float>(expected.x), static_cast<float>(expected.y), static_cast<float>(expected.z)),
                    kFloatError * depth * expected.x);
       // Depth N shows N - 1 reflections: rays and the deepest level say so.
       EXPECT_EQ(result.statistics.rays[static_cast<int>(RayKind::reflected)], 16u * static_cast<unsigned>(depth - 1));
@@ -196,7 +196,7 @@ TEST(RayTree, ACameraInsideGlassSeesTheOutsideThroughTheSurface) {
         const Vec3d d = unit(Vec3d(1, (32 - y - 0.5) * pixel, (x + 0.5 - 32) * pixel)), o(0, 0, 0.9);
         const double b = o.dot(d), t = -b + std::sqrt(b * b - o.dot(o) + 1);
         const Vec3d p = o + d * t;
-        const auto exit = refracted_direction(d, -unit(p), 1 / index);
+        const auto exit = refracted_direction(d, -unit(p), index);
         const double cos_out = exit ? exit->dot(p) : 0;
         if (cos_out < 0.05 && exit) continue;  // conditioning at the critical angle
         total += !exit;

@@ -44,20 +44,21 @@ struct Setting {
   double size, place;
 };
 
-const Setting kSettings[] = {{1e-4, 0},   {1e-4, 1e-3}, {1e-4, 1},   {1e-2, 0},   {1e-2, 10},  {1, 0},     {1, 1},
-                             {1, 1e3},    {1, 1e5},     {30, 1e4},   {1e3, 0},    {1e3, 1e3},  {1e3, 1e6}, {1e5, 1e5},
-                             {1e6, 0},    {1e6, 1e6}};
+const Setting kSettings[] = {{1e-4, 0},  {1e-4, 1e-3}, {1e-4, 1}, {1e-2, 0}, {1e-2, 10}, {1, 0},
+                             {1, 1},     {1, 1e3},     {1, 1e5},  {30, 1e4}, {1e3, 0},   {1e3, 1e3},
+                             {1e3, 1e6}, {1e5, 1e5},   {1e6, 0},  {1e6, 1e6}};
 
 struct Count {
-  int left = 0;   ///< rays that left a surface
+  int left = 0;  ///< rays that left a surface
   int false_hits = 0;
 };
 
 /// Shoots rays at primitive after primitive, spawns from the hit to both sides, counts what meets its own primitive.
-/// `aim(i)` yields a point of primitive i, `own(hit, point, direction)` says whether a spawned ray's hit is a false one.
+/// `aim(i)` yields a point of primitive i, `own(hit, point, direction)` says whether a spawned ray's hit is a false
+/// one.
 template <class Aim, class Own>
-Count count_false_hits(const ShapeSet& shapes, int primitives, GeometryId geometry, double size, Random& random, Aim&& aim,
-                       Own&& own) {
+Count count_false_hits(const ShapeSet& shapes, int primitives, GeometryId geometry, double size, Random& random,
+                       Aim&& aim, Own&& own) {
   const EmbreeIntersector intersector(shapes, EmbreeOptions{});
   Count count;
   RayBatch rays(64);
@@ -79,7 +80,8 @@ Count count_false_hits(const ShapeSet& shapes, int primitives, GeometryId geomet
         for (int k = 0; k < 8; ++k) {
           ++count.left;
           if (hits.geometry[k] == geometry && hits.primitive[k] == hit.primitive)
-            count.false_hits += own(hits[static_cast<std::size_t>(k)], point, rays.direction(static_cast<std::size_t>(k)), side);
+            count.false_hits +=
+                own(hits[static_cast<std::size_t>(k)], point, rays.direction(static_cast<std::size_t>(k)), side);
         }
       }
     }
@@ -102,7 +104,8 @@ Count triangle_false_hits(const Setting& setting, double aspect, bool level, Ran
     along = unit(along);
     across = unit(across - along * across.dot(along));
     const double apex = random.uniform(-0.2, 1.2);
-    const Vec3d corners[3] = {place, place + along * setting.size, place + (along * apex + across * aspect) * setting.size};
+    const Vec3d corners[3] = {place, place + along * setting.size,
+                              place + (along * apex + across * aspect) * setting.size};
     Vec3d p[3];
     for (int c = 0; c < 3; ++c) {
       mesh.positions.push_back(Vec3f(corners[c]));
@@ -151,7 +154,8 @@ TEST(SelfIntersection, NoRayHitsTheSphereItLeftButForItsFarSide) {
     ShapeSet shapes;
     for (int i = 0; i < n; ++i) {
       const Vec3f c(random.in_cube(setting.place + 30 * setting.size));
-      shapes.spheres.center_radius.push_back({c.x, c.y, c.z, static_cast<float>(setting.size * random.uniform(0.1, 1))});
+      shapes.spheres.center_radius.push_back(
+          {c.x, c.y, c.z, static_cast<float>(setting.size * random.uniform(0.1, 1))});
       shapes.spheres.shape.push_back(0);
     }
     const auto center = [&](std::size_t i) {
@@ -184,7 +188,8 @@ TEST(SelfIntersection, NoRayHitsTheDiscItLeft) {
       ShapeSet shapes;
       std::vector<Vec3d> inside;
       for (int i = 0; i < n; ++i) {
-        const Vec3f c(random.in_cube(setting.place + 30 * setting.size)), normal(level ? Vec3d(0, 1, 0) : random.direction());
+        const Vec3f c(random.in_cube(setting.place + 30 * setting.size)),
+            normal(level ? Vec3d(0, 1, 0) : random.direction());
         const double radius = setting.size * random.uniform(0.1, 1);
         shapes.discs.center_radius.push_back({c.x, c.y, c.z, static_cast<float>(radius)});
         shapes.discs.normal.push_back(normal);
@@ -208,8 +213,8 @@ TEST(SelfIntersection, NoRayHitsThePlaneItLeft) {
     Count count;
     for (int i = 0; i < 200; ++i) {
       ShapeSet shapes;
-      shapes.planes.push_back({random.in_cube(setting.place + setting.size),
-                               i % 2 == 0 ? Vec3d(0, 1, 0) : random.direction(), 0});
+      shapes.planes.push_back(
+          {random.in_cube(setting.place + setting.size), i % 2 == 0 ? Vec3d(0, 1, 0) : random.direction(), 0});
       const Vec3d normal = shapes.planes[0].normal;
       Vec3d target = shapes.planes[0].point + random.in_cube(setting.size);
       target -= normal * (target - shapes.planes[0].point).dot(normal);
@@ -237,7 +242,8 @@ TEST(SelfIntersection, RaysAlongASharedEdgeDoNotHitTheNeighborOfAFlatMesh) {
       mesh.positions.assign({Vec3f(place), Vec3f(place + a), Vec3f(place + a + b), Vec3f(place + b)});
       mesh.corners.assign({0, 1, 2, 0, 2, 3});
       const EmbreeIntersector intersector(shapes, EmbreeOptions{});
-      const Vec3d at = place + a * 0.5 + b * 0.5 + (a + b) * random.uniform(-0.45, 0.45) + a * random.uniform(-1e-3, 1e-3);
+      const Vec3d at =
+          place + a * 0.5 + b * 0.5 + (a + b) * random.uniform(-0.45, 0.45) + a * random.uniform(-1e-3, 1e-3);
       const Vec3f origin(at + random.direction() * setting.size);
       const Vec3f direction(unit(at - Vec3d(origin)));
       const Hit hit = intersector.intersect_one(origin, direction, kInfinity);
@@ -284,7 +290,8 @@ TEST(SelfIntersection, NearbySurfacesAreStillFound) {
       EXPECT_LT(inner.distance, radius * 1e-4 / 0.04);
       // And back out from the inner one.
       const SurfacePoint deeper = surface_at(shapes, point.position, direction, inner, false);
-      const Hit back = intersector.intersect_one(offset_origin(deeper, deeper.geometric_normal), deeper.geometric_normal, kInfinity);
+      const Hit back =
+          intersector.intersect_one(offset_origin(deeper, deeper.geometric_normal), deeper.geometric_normal, kInfinity);
       ASSERT_EQ(back.primitive, 0u);
     }
     EXPECT_GT(entered, 1000);
@@ -300,7 +307,8 @@ TEST(SelfIntersection, NearbySurfacesAreStillFound) {
     const EmbreeIntersector pair(sheets, EmbreeOptions{});
     for (int i = 0; i < 500; ++i) {
       const Vec3f direction(unit(Vec3d(0, 0, -1) + random.in_cube(0.4)));
-      const Vec3f origin(static_cast<float>(radius * random.uniform(-0.1, 0.1)), static_cast<float>(radius * random.uniform(-0.3, 0)), 0.2f * r);
+      const Vec3f origin(static_cast<float>(radius * random.uniform(-0.1, 0.1)),
+                         static_cast<float>(radius * random.uniform(-0.3, 0)), 0.2f * r);
       const Hit first = pair.intersect_one(origin, direction, kInfinity);
       ASSERT_EQ(first.geometry, kFirstMeshGeometry);
       const SurfacePoint point = surface_at(sheets, origin, direction, first, false);

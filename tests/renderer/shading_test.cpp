@@ -114,8 +114,8 @@ TEST(Shading, HighlightContoursOnASphereLieWhereTheFormulasPutThem) {
       for (int i = 0; i < size; i += 7) {
         const double px = (i + 0.5 - size / 2.0) * height / size, rho2 = 2 * px * px;
         if (rho2 > 0.98) continue;
-        const double expected = form == HighlightForm::reflected ? std::pow(std::max(0.0, 1 - 2 * rho2), n)
-                                                                 : std::pow(1 - rho2, n / 2);
+        const double expected =
+            form == HighlightForm::reflected ? std::pow(std::max(0.0, 1 - 2 * rho2), n) : std::pow(1 - rho2, n / 2);
         EXPECT_NEAR(color_at(result.film, i, i).r, expected, 2 * n * kFloatError);
       }
     }
@@ -147,7 +147,8 @@ TEST(Shading, CheckerLooksUpTheSquareThatAPointLiesIn) {
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) {
       const double px = (x + 0.5 - 20) * 0.2, py = (20 - y - 0.5) * 0.2;
-      const int square = static_cast<int>(std::floor((px - 0.35) / 1.5)) + static_cast<int>(std::floor((py + 0.15) / 1.5));
+      const int square =
+          static_cast<int>(std::floor((px - 0.35) / 1.5)) + static_cast<int>(std::floor((py + 0.15) / 1.5));
       expect_color(color_at(result.film, x, y), square % 2 == 0 ? checker.even : checker.odd, 0);
       even += square % 2 == 0;
     }
@@ -174,7 +175,8 @@ TEST(Shading, CheckerFollowsTheWorldWhereTheSceneIsRecentered) {
     const RenderResult result = render(ready, {});
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 16; ++x) {
-        const int square = static_cast<int>(std::floor((x + 0.5 - 8) / 4)) + static_cast<int>(std::floor((8 - y - 0.5) / 4));
+        const int square =
+            static_cast<int>(std::floor((x + 0.5 - 8) / 4)) + static_cast<int>(std::floor((8 - y - 0.5) / 4));
         EXPECT_EQ(color_at(result.film, x, y).r, square % 2 == 0 ? 1 : 0) << x << " " << y << " " << offset;
       }
   }

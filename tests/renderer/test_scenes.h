@@ -179,12 +179,13 @@ inline std::shared_ptr<PolygonMesh> globe_mesh(double radius, int columns, int r
   for (int row = 1; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       const double polar = std::numbers::pi * row / rows, azimuth = 2 * std::numbers::pi * column / columns;
-      positions.emplace_back(Vec3d(std::sin(polar) * std::sin(azimuth), std::cos(polar),
-                                   std::sin(polar) * std::cos(azimuth)) *
-                             radius);
+      positions.emplace_back(
+          Vec3d(std::sin(polar) * std::sin(azimuth), std::cos(polar), std::sin(polar) * std::cos(azimuth)) * radius);
     }
   positions.emplace_back(0.0f, static_cast<float>(-radius), 0.0f);
-  const auto at = [&](int row, int column) { return static_cast<std::uint32_t>(1 + (row - 1) * columns + column % columns); };
+  const auto at = [&](int row, int column) {
+    return static_cast<std::uint32_t>(1 + (row - 1) * columns + column % columns);
+  };
   const auto last = static_cast<std::uint32_t>(positions.size() - 1);
   std::vector<std::uint32_t> corners;
   for (int column = 0; column < columns; ++column) {
