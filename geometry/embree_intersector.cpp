@@ -30,6 +30,18 @@ void copy_lanes(void* to, const void* from) {
   std::memcpy(to, from, Width * 4);
 }
 
+/// The fields of a packet that Embree only reads and that are alike for all rays.
+template <int Width, class Ray>
+void set_constant_fields(Ray& ray) {
+  for (int i = 0; i < Width; ++i) {
+    ray.tnear[i] = 0;
+    ray.time[i] = 0;
+    ray.mask[i] = 0xffffffffu;
+    ray.id[i] = 0;
+    ray.flags[i] = 0;
+  }
+}
+
 /// Fills a packet from rays [first, first + Width) and says which lanes are live: inside the batch, finite, with a
 /// direction and an end that is not behind the origin. (Debian's Embree 3 aborts the process on a NaN.)
 template <int Width, class Ray>
@@ -43,11 +55,6 @@ void load_rays(const RayBatch& rays, std::size_t first, const float* max_distanc
   copy_lanes<Width>(ray.tfar, max_distance + first);
   const int live = static_cast<int>(std::min<std::size_t>(Width, rays.size - first));
   for (int i = 0; i < Width; ++i) {
-    ray.tnear[i] = 0;
-    ray.time[i] = 0;
-    ray.mask[i] = 0xffffffffu;
-    ray.id[i] = 0;
-    ray.flags[i] = 0;
     // x * 0 is 0 for finite x and NaN else; one sum tells for all six.
     const float poison =
         ray.org_x[i] * 0 + ray.org_y[i] * 0 + ray.org_z[i] * 0 + ray.dir_x[i] * 0 + ray.dir_y[i] * 0 + ray.dir_z[i] * 0;
@@ -62,6 +69,7 @@ void intersect_packets(RTCScene scene, const RayBatch& rays, bool coherent, cons
   Query query(coherent);
   alignas(64) int valid[Width];
   typename PacketTypes<Width>::RayHit packet;
+  set_constant_fields<Width>(packet.ray);
   for (std::size_t first = 0; first < rays.size; first += Width) {
     load_rays<Width>(rays, first, max_distance, packet.ray, valid);
     for (int i = 0; i < Width; ++i) {
@@ -82,6 +90,7 @@ void occluded_packets(RTCScene scene, const RayBatch& rays, bool coherent, std::
   Query query(coherent);
   alignas(64) int valid[Width];
   typename PacketTypes<Width>::Ray packet;
+  set_constant_fields<Width>(packet);
   for (std::size_t first = 0; first < rays.size; first += Width) {
     load_rays<Width>(rays, first, rays.max_distance, packet, valid);
     query.occluded(scene, valid, packet);

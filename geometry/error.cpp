@@ -6,7 +6,7 @@ std::string located_message(const SourceLocation& where, const std::string& mess
   std::string text;
   if (!where.file.empty()) {
     text += where.file;
-    if (where.line > 0) text += ":" + std::to_string(where.line);
+    if (where.line > 0) text.append(":").append(std::to_string(where.line));
     text += ": ";
   }
   if (!where.object.empty()) text += where.object + ": ";

@@ -17,14 +17,14 @@ struct PlaneHits {
   std::vector<float> distance;
 };
 
-/// Distance along the ray to the plane, >= 0, or -1: parallel or behind.
+/// Distance along the ray to the plane, > 0, or -1: parallel, behind, or starting on it.
 inline float plane_distance(const Plane& plane, const Vec3f& origin, const Vec3f& direction) {
   const double slope = plane.normal.x * direction.x + plane.normal.y * direction.y + plane.normal.z * direction.z;
   const double height = plane.normal.x * (plane.point.x - origin.x) + plane.normal.y * (plane.point.y - origin.y) +
                         plane.normal.z * (plane.point.z - origin.z);
   const double distance = height / slope;
   // A quotient beyond float's range is no hit; NaN (0 / 0, or a ray that is not finite) fails the comparison too.
-  return distance >= 0 && distance < 3e38 ? static_cast<float>(distance) : -1.0f;
+  return distance > 0 && distance < 3e38 ? static_cast<float>(distance) : -1.0f;
 }
 
 void intersect_planes(const std::vector<Plane>& planes, const RayBatch& rays, PlaneHits& hits) noexcept;

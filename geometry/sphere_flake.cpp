@@ -32,12 +32,14 @@ std::array<Vec3d, kChildren> child_directions() {
   return directions;
 }
 
-/// `local` turned by the shortest rotation that takes +z onto the unit vector `axis`.
+/// `local` turned by the shortest rotation that takes +z onto the unit vector `axis`. Near the poles, where that
+/// rotation is ill-defined (-z) or next to nothing (+z), SPD's program takes half a turn about y and none at all; its
+/// threshold shows in its output, of which 54 spheres of level 6 differ with one half or twice as large.
 Vec3d turned(const Vec3d& local, const Vec3d& axis) {
-  // Within this of -z the shortest rotation is undefined in double; half a turn about y stands for it.
-  constexpr double kOpposite = 1e-12;
+  constexpr double kPole = 1e-4;  // of 1 - |cos| of the angle from the pole, 0.81 degrees
   const double above = 1 + axis.z;
-  if (above < kOpposite) return {-local.x, local.y, -local.z};
+  if (above < kPole) return {-local.x, local.y, -local.z};
+  if (axis.z > 1 - kPole) return local;
   const double shared = (local.x * axis.x + local.y * axis.y) / above;
   return {local.x - axis.x * shared + axis.x * local.z, local.y - axis.y * shared + axis.y * local.z,
           axis.z * local.z - (local.x * axis.x + local.y * axis.y)};

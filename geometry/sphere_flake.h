@@ -36,7 +36,8 @@ double sphere_flake_bounding_radius(const SphereFlakeParameters& parameters);
 /// The nine children of a sphere touch it at a third of its radius, so their centers lie 4/3 radius away: six on the
 /// equator about the sphere's axis, at 15 and 75 degrees of azimuth and every 120 degrees on from there; three at
 /// latitude asin(sqrt(2/3)) = 54.74 degrees, at azimuths 45, 165 and 285. A child's axis points away from its parent,
-/// and its frame is the root's turned the shortest way onto that axis. The root's axis is +y.
+/// and its frame is the root's turned the shortest way onto that axis (within 0.81 degrees of the poles: not at all at
+/// +y, half a turn at -y, as SPD's program has it). The root's axis is +y.
 /// Depth first, parents before children: sphere 0 is the root, and order and places equal those of SPD's program after
 /// (x, y, z) -> (x, z, -y), which turns its z-up into y-up.
 /// Throws Error (bad_input) for levels out of range, a radius that is not positive and finite, a center that is not

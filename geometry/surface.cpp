@@ -9,15 +9,17 @@ SurfacePoint sphere_surface(const ShapeSet& shapes, const Vec3f& origin, const V
 
   // The intersector says which sphere and which of its two sides; where exactly is solved again in double, by way of
   // the ray's closest point to the center, which keeps its digits for far and small spheres.
-  const Vec3d o(origin);
-  const Vec3d d = unit(Vec3d(direction));
+  const Vec3d o(origin), d(direction);
   const Vec3d to_center = center - o;
-  const double along = to_center.dot(d);
+  const double inverse_square = 1 / d.dot(d);
+  const double along = to_center.dot(d) * inverse_square;
   const Vec3d closest = d * along - to_center;  // from the center
-  const double half_chord = std::sqrt(std::max(0.0, radius * radius - closest.dot(closest)));
+  const double half_chord = std::sqrt(std::max(0.0, (radius * radius - closest.dot(closest)) * inverse_square));
   const double near = along - half_chord, far = along + half_chord;
   const bool takes_near = std::abs(near - hit.distance) <= std::abs(far - hit.distance);
-  const Vec3d normal = unit(closest + d * (takes_near ? -half_chord : half_chord));
+  const Vec3d from_center = closest + d * (takes_near ? -half_chord : half_chord);
+  // A ray that grazes the sphere within the intersector's error has no chord: its closest point lies off the surface.
+  const Vec3d normal = half_chord > 0 ? from_center * (1 / radius) : unit(from_center);
 
   SurfacePoint point;
   point.geometric_normal = point.shading_normal = Vec3f(normal);
@@ -40,10 +42,10 @@ SurfacePoint flat_surface(const Vec3d& through, const Vec3d& normal, const Vec3f
   SurfacePoint point;
   point.position = Vec3f(position);
   point.geometric_normal = point.shading_normal = Vec3f(normal);
-  const Vec3d n(std::abs(normal.x), std::abs(normal.y), std::abs(normal.z));
-  point.clearance = static_cast<float>(kSurfaceError * (n.x * std::max(std::abs(position.x), std::abs(through.x)) +
-                                                        n.y * std::max(std::abs(position.y), std::abs(through.y)) +
-                                                        n.z * std::max(std::abs(position.z), std::abs(through.z))));
+  const auto largest = [&](int axis) {
+    return static_cast<float>(std::max(std::abs(position[axis]), std::abs(through[axis])));
+  };
+  point.clearance = clearance(point.geometric_normal, {largest(0), largest(1), largest(2)});
   point.distance = static_cast<float>(distance);
   return point;
 }

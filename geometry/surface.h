@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/ray_batch.h"
 #include "geometry/shape_set.h"
@@ -10,10 +11,24 @@
 
 namespace raytree {
 
-/// Bound on the distance between a computed hit point and the surface, in units of half an ulp of the coordinates that
-/// it was computed from. Barycentric points are off by up to 12 ulp, and the intersector's own test of a ray that
-/// starts there errs by as much again; 64 half ulps cover both (tests/renderer/self_intersection_test.cpp).
-inline constexpr float kSurfaceError = 64 * 0x1p-24f;
+/// Bound on the distance between a computed hit point and the surface as the intersector sees it from there, in units
+/// of half an ulp of the coordinates that it was computed from. The point itself rounds three products and two sums
+/// (2 units), its offset once more, the intersector's differences, cross and dot products another few: false hits
+/// begin to show at 3 units and are gone at 4 (tests/renderer/self_intersection_test.cpp, 16 sizes and places). Four
+/// times that serves.
+inline constexpr float kSurfaceError = 16 * 0x1p-24f;
+
+/// The same for the part that a triangle's thinness magnifies: the rounding of the cross product of its edges, which
+/// turns the normal, times how far the triangle reaches. For a triangle of height h over an edge of length l it grows
+/// as l^2 / h, so slivers need it and other triangles hardly feel it.
+inline constexpr float kNormalError = 2 * 0x1p-24f;
+
+/// At most this share of a triangle's reach is added for its thinness.
+inline constexpr float kMostNormalError = 0x1p-9f;
+
+/// Share of the largest coordinate that counts as error in every direction: a floor at height 0 has no error in height,
+/// yet a ray must start off it, not on it.
+inline constexpr float kLeastError = 0x1p-10f;
 
 struct SurfacePoint {
   Vec3f position;          ///< scene space
@@ -27,7 +42,23 @@ struct SurfacePoint {
 inline Vec3f unit(const Vec3f& v) { return v * (1 / std::sqrt(v.dot(v))); }
 inline Vec3d unit(const Vec3d& v) { return v * (1 / std::sqrt(v.dot(v))); }
 
+/// A vector that is unit but for rounding made unit again: one step of Newton's method for the inverse root, so that
+/// the length does not drift over a deep tree.
+template <class Vec>
+Vec renormalized(const Vec& v) {
+  using Real = typename Vec::BaseType;
+  return v * (Real(1.5) - Real(0.5) * v.dot(v));
+}
+
 namespace detail {
+
+/// Distance from which a new ray starts, for a point computed from coordinates of up to `largest` per component. Per
+/// component, since a horizontal floor of 1e4 units has next to no error in height, however wide it is.
+inline float clearance(const Vec3f& normal, const Vec3f& largest) {
+  return kSurfaceError *
+         (std::abs(normal.x) * largest.x + std::abs(normal.y) * largest.y + std::abs(normal.z) * largest.z +
+          kLeastError * std::max(largest.x, std::max(largest.y, largest.z)));
+}
 
 SurfacePoint sphere_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit);
 SurfacePoint disc_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit);
@@ -40,18 +71,29 @@ inline SurfacePoint triangle_surface(const TriangleMesh& mesh, const Hit& hit, b
 
   SurfacePoint point;
   point.position = a * w + b * u + c * v;
-  const Vec3f normal = (b - a).cross(c - a);
+  // The cross product of two edges, its two products apart: the larger they are beside their difference, the less its
+  // direction is worth.
+  const Vec3f e = b - a, f = c - a;
+  const Vec3f plus(e.y * f.z, e.z * f.x, e.x * f.y), minus(e.z * f.y, e.x * f.z, e.y * f.x);
+  const Vec3f normal = plus - minus;
   const float length_squared = normal.dot(normal);
-  point.geometric_normal =
-      length_squared > 0 ? normal * (1 / std::sqrt(length_squared)) : Vec3f(unit(Vec3d(b - a).cross(Vec3d(c - a))));
+  // Squares of very short or very long edges leave float's range.
+  const bool in_range = length_squared > 0x1p-100f && length_squared <= std::numeric_limits<float>::max();
+  const float over_length = 1 / std::sqrt(length_squared);
+  point.geometric_normal = in_range ? normal * over_length : Vec3f(unit(Vec3d(e).cross(Vec3d(f))));
 
-  // Per component: a horizontal floor of 1e4 units has no error in height, however wide it is.
-  const Vec3f& n = point.geometric_normal;
   const auto largest = [](float x, float y, float z) {
     return std::max(std::abs(x), std::max(std::abs(y), std::abs(z)));
   };
-  point.clearance = kSurfaceError * (std::abs(n.x) * largest(a.x, b.x, c.x) + std::abs(n.y) * largest(a.y, b.y, c.y) +
-                                     std::abs(n.z) * largest(a.z, b.z, c.z));
+  point.clearance =
+      clearance(point.geometric_normal, {largest(a.x, b.x, c.x), largest(a.y, b.y, c.y), largest(a.z, b.z, c.z)});
+  const Vec3f reach(std::abs(e.x) + std::abs(f.x), std::abs(e.y) + std::abs(f.y), std::abs(e.z) + std::abs(f.z));
+  const float turned = (std::abs(plus.x) + std::abs(minus.x)) * reach.x +
+                       (std::abs(plus.y) + std::abs(minus.y)) * reach.y +
+                       (std::abs(plus.z) + std::abs(minus.z)) * reach.z;
+  if (in_range)
+    point.clearance += std::min(kNormalError * turned * over_length,
+                                kMostNormalError * std::max(reach.x, std::max(reach.y, reach.z)));
   point.distance = hit.distance;
 
   point.shading_normal = point.geometric_normal;
@@ -62,7 +104,7 @@ inline SurfacePoint triangle_surface(const TriangleMesh& mesh, const Hit& hit, b
     const float square = mean.dot(mean);
     // Opposite vertex normals cancel (catalogue of failures: interpolated normal -> 0); the facet's own is always
     // there.
-    if (square > 1e-12f) point.shading_normal = mean * (1 / std::sqrt(square));
+    if (square > 1e-12f && square <= std::numeric_limits<float>::max()) point.shading_normal = mean * (1 / std::sqrt(square));
   }
   if (texture && !mesh.texture_coordinates.empty()) {
     const std::uint32_t* index =

@@ -26,10 +26,16 @@ namespace {
 
 constexpr int kBlock = 128;         ///< points evaluated together; the arrays of a block stay in the first-level cache
 constexpr int kMaxOctaves = 16;     ///< the finest grid shows eleven
-constexpr float kBaseCells = 2.3f;  ///< noise cells along the square's edge in the first octave
-constexpr float kLacunarity = 1.97f;   ///< not 2, so that no two octaves share lattice points
-constexpr float kWarp = 0.17f;         ///< shift per accumulated slope, in cells of the first octave
-constexpr double kCellsPerWave = 2.5;  ///< an octave is at full strength when its noise cell spans twice this many
+constexpr float kBaseCells = 2.1f;  ///< noise cells along the square's edge in the first octave
+constexpr float kLacunarity = 1.97f;  ///< not 2, so that no two octaves share lattice points
+// What follows was chosen by eye: sharp ridges, broad valleys, flanks furrowed downhill.
+constexpr float kRidgeWidth = 0.035f;    ///< noise value below which a ridge is rounded, so that slopes are continuous
+constexpr float kValleyWidth = 0.45f;    ///< noise value at which a ridge has lost half its height
+constexpr float kWarp = 0.025f;          ///< downhill shift of an octave's lattice per accumulated slope
+constexpr float kSlopeDamping = 0.02f;   ///< how much steep flanks lose of later octaves
+constexpr float kValleyDetail = 0.5f;    ///< share of later octaves' amplitude that deep valleys keep
+constexpr float kMeanRidge = 0.66f;      ///< taken off, so that an octave more does not lift the terrain
+constexpr double kSamplesPerCell = 2.5;  ///< an octave shows from here on, and fully from twice as many
 
 /// What one octave needs besides the point.
 struct Octave {
@@ -71,7 +77,7 @@ class Surface {
     double frequency = kBaseCells;
     for (int i = 0; i < kMaxOctaves; ++i, frequency *= kLacunarity) {
       const double samples_per_cell = 1 / (frequency * cell);
-      const double weight = std::clamp(samples_per_cell / kCellsPerWave - 1, 0.0, 1.0);
+      const double weight = std::clamp(samples_per_cell / kSamplesPerCell - 1, 0.0, 1.0);
       if (i > 0 && weight <= 0) break;
       Octave& octave = octaves_[count_++];
       const std::uint32_t key = mixed(seed + 0x9e3779b9u * std::uint32_t(i + 1));
@@ -89,22 +95,24 @@ class Surface {
 
   /// x, z: [kBlock] in [-1/2, 1/2], about; height: [kBlock].
   void evaluate(const float* x, const float* z, float* height) const {
-    alignas(64) float sum[kBlock], slope_x[kBlock], slope_z[kBlock], amplitude[kBlock];
+    alignas(64) float sum[kBlock], slope_x[kBlock], slope_z[kBlock], amplitude[kBlock], warp_x[kBlock], warp_z[kBlock];
     for (int i = 0; i < kBlock; ++i) {
-      sum[i] = slope_x[i] = slope_z[i] = 0;
+      sum[i] = slope_x[i] = slope_z[i] = warp_x[i] = warp_z[i] = 0;
       amplitude[i] = 1;
     }
-    for (int o = 0; o < count_; ++o) add(octaves_[std::size_t(o)], x, z, sum, slope_x, slope_z, amplitude);
+    for (int o = 0; o < count_; ++o)
+      add(octaves_[std::size_t(o)], x, z, sum, slope_x, slope_z, amplitude, warp_x, warp_z);
     for (int i = 0; i < kBlock; ++i) height[i] = sum[i];
   }
 
  private:
   static void add(const Octave& octave, const float* __restrict x, const float* __restrict z, float* __restrict sum,
-                  float* __restrict slope_x, float* __restrict slope_z, float* __restrict amplitude) {
-    constexpr float kShift = kWarp / kBaseCells;
+                  float* __restrict slope_x, float* __restrict slope_z, float* __restrict amplitude,
+                  float* __restrict warp_x, float* __restrict warp_z) {
+    const float inverse_frequency = 1 / octave.frequency;
     for (int i = 0; i < kBlock; ++i) {
-      const float u = (x[i] + kShift * slope_x[i]) * octave.frequency;
-      const float v = (z[i] + kShift * slope_z[i]) * octave.frequency;
+      const float u = (x[i] - kWarp * warp_x[i]) * octave.frequency;
+      const float v = (z[i] - kWarp * warp_z[i]) * octave.frequency;
       const float p = octave.cosine * u - octave.sine * v + octave.offset_x;
       const float q = octave.sine * u + octave.cosine * v + octave.offset_z;
       const float cell_p = std::floor(p), cell_q = std::floor(q);
@@ -128,14 +136,20 @@ class Surface {
       const float gz = g00.z + wp * (g10.z - g00.z) + wq * (g01.z - g00.z) + wp * wq * (g00.z - g10.z - g01.z + g11.z);
       const float dp = gx + dwp * (b - a + wq * twist);
       const float dq = gz + dwq * (c - a + wp * twist);
-      const float strength = octave.weight * amplitude[i];
-      const float sign = noise < 0 ? 1.0f : -1.0f;
-      const float ridge = 1 - 1.6f * std::abs(noise);
-      sum[i] += strength * ridge;
-      slope_x[i] += strength * sign * (octave.cosine * dp + octave.sine * dq);
-      slope_z[i] += strength * sign * (octave.cosine * dq - octave.sine * dp);
-      const float low = sum[i] < 0 ? 0.0f : sum[i];
-      amplitude[i] *= octave.gain * (low < 1 ? low : 1.0f);
+      const float damping = 1 / (1 + kSlopeDamping * (slope_x[i] * slope_x[i] + slope_z[i] * slope_z[i]));
+      const float strength = octave.weight * amplitude[i] * damping;
+      const float softened = std::sqrt(noise * noise + kRidgeWidth * kRidgeWidth);
+      const float fall = 1 / (kValleyWidth + softened);
+      const float ridge = kValleyWidth * fall;
+      const float turn = -strength * octave.frequency * (1 / kBaseCells) * ridge * fall * noise / softened;
+      sum[i] += strength * (ridge - kMeanRidge);
+      const float rise_x = turn * (octave.cosine * dp + octave.sine * dq);
+      const float rise_z = turn * (octave.cosine * dq - octave.sine * dp);
+      slope_x[i] += rise_x;
+      slope_z[i] += rise_z;
+      warp_x[i] += rise_x * inverse_frequency;
+      warp_z[i] += rise_z * inverse_frequency;
+      amplitude[i] *= octave.gain * (kValleyDetail + (1 - kValleyDetail) * ridge);
     }
   }
 

@@ -28,8 +28,8 @@ struct TerrainGrid {
 };
 
 /// The grid for a count: of all with rows <= columns <= max(rows + 1, 1.05 rows), the one whose triangle count is
-/// nearest to the count asked for; of several, the squarest, then the one with fewer triangles. An even count of a
-/// million or more is met exactly or missed by at most a few triangles.
+/// nearest to the count asked for; of several, the squarest, then the one with fewer triangles. A count of a
+/// million or more is missed by less than 0.05 %.
 /// Throws Error (bad_input) outside [kLeastTerrainTriangles, kMostTerrainTriangles].
 TerrainGrid terrain_grid(std::int64_t triangles);
 
@@ -38,9 +38,9 @@ TerrainGrid terrain_grid(std::int64_t triangles);
 /// split along the diagonal whose ends differ less in height, so that ridges and valleys are not cut across.
 ///
 /// The surface is one function of (x, z), seed and roughness; more triangles show more octaves of it, a new octave
-/// growing in smoothly. It is a sum of octaves of ridged gradient noise (Perlin 1985; ridges as in Musgrave 1994), each
-/// looked up at a place shifted by the slopes of those before it, which draws ridges sharp and flanks down into
-/// valleys, and fading where the sum is low, which leaves valley floors smooth.
+/// growing in smoothly. It is a sum of octaves of ridged gradient noise (Perlin 1985; ridges after Musgrave, in Ebert
+/// et al., Texturing and Modeling, 1994): every octave is strong near the ridges of the one before, weak in its valleys
+/// and on steep flanks, and its lattice is shifted downhill, which draws furrows down the flanks.
 ///
 /// Throws Error (bad_input) for parameters out of range. Runs on the task arena's threads; the result does not depend
 /// on their number.

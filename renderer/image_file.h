@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +16,8 @@ namespace raytree {
 struct ImagePlane {
   std::string name;       ///< channel name in the file
   PixelType type;         ///< how the file stores it (EXR: half, float32, uint32; others: one type for all)
-  PixelType source_type;  ///< type of `pixels`: float32, uint32, uint8 or uint16
+  PixelType source_type;  ///< type of `pixels`: equal to `type`, or float32 for half (beyond 65504 becomes 65504), and
+                          ///< for uint8 and uint16 ([0, 1] to the whole range, rounded)
   const void* pixels;     ///< [height][width], row 0 at the top
 };
 
@@ -25,32 +27,54 @@ struct Image {
   int frame_width = 0, frame_height = 0;  ///< the whole frame (EXR display window)
   PixelWindow window;                     ///< the part held (EXR data window; other formats hold it alone)
   std::vector<ImagePlane> planes;
-  std::vector<std::pair<std::string, std::string>> metadata;  ///< name, text
+  std::vector<std::pair<std::string, std::string>> metadata;  ///< name, text; one line of plain text each is safest
+  std::string color_space;  ///< what the file declares: "linear_rec709", "srgb" or empty (nothing)
 };
 
 /// Format by the file name's extension (.exr .png .jpg .jpeg .tif .tiff, any case). Throws Error (bad_input) that
 /// lists the choices.
 ImageFormat image_format(const std::string& path);
 
-/// Begins loading the module in a background thread; returns at once. Later calls wait for it.
+/// Whether files of this format can hold an alpha channel.
+bool holds_alpha(ImageFormat format);
+
+/// Begins loading the module in a background thread; returns at once. Later calls wait for it, and so does the
+/// program's exit. The module is $RAYTREE_IMAGE_IO if that is set; else raytree_image_io.so beside the program, in
+/// ../lib, ../lib/raytree or the installation's library folder relative to it. That it is missing is reported by the
+/// call that needs it, as an Error (failure) that names the paths tried.
 void preload_image_io();
 
-/// The encoded file. Throws Error (failure).
-std::vector<std::byte> encode_image(const Image& image, ImageFormat format);
+struct EncodeReport {
+  std::int64_t half_clamped = 0;  ///< finite values beyond 65504 that became 65504 in planes of type half
+};
 
-/// Writes bytes to `path` whole or not at all: a temporary file beside it, fsync, rename. "-" is standard output.
+/// The encoded file, made with as many threads as TBB's global_control allows; its bytes do not depend on them.
+/// Throws Error (failure).
+std::vector<std::byte> encode_image(const Image& image, ImageFormat format, EncodeReport* report = nullptr);
+
+/// Writes bytes to `path` whole or not at all: a temporary file beside it, fsync, rename; links are followed and the
+/// mode of an existing file is kept. "-" is standard output; devices, pipes and /dev/fd/N are written in place.
 /// An existing file stays as it was when anything fails. Throws Error (failure) with the path and the system's reason.
 void write_file_atomically(const std::string& path, const void* bytes, std::size_t size);
 
-/// Removes the temporary file of a write under way, if any: for the handler of an interruption.
+/// Removes the temporary files of writes under way, if any. Async-signal-safe: for the handler of an interruption.
 void remove_unfinished_file() noexcept;
 
 /// A picture read back: float planes named as in the file, [height][width].
 struct DecodedImage {
   int width = 0, height = 0;
+  int frame_width = 0, frame_height = 0;  ///< EXR: the display window's size; else the picture's
+  int x0 = 0, y0 = 0;                     ///< where the picture lies in the frame
   std::vector<std::string> names;
+  std::vector<PixelType> types;  ///< in the file; what is none of PixelType counts as float32
+  /// [plane][height][width]; 8 and 16 bits as [0, 1], uint32 rounded to float
   std::vector<std::vector<float>> planes;
+  /// [plane]: exact values of planes of type uint32, empty for others
+  std::vector<std::vector<std::uint32_t>> id_planes;
   std::vector<std::pair<std::string, std::string>> metadata;  ///< text attributes
+
+  /// Index of the plane of that name, or -1.
+  int plane_index(const std::string& name) const;
 };
 
 /// Reads an image file. Throws Error (bad_input).

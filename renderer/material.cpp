@@ -45,7 +45,9 @@ Material make_material(const MaterialDescription& description, bool fresnel, con
   material.exponent = static_cast<float>(description.highlight.exponent);
   material.reflection = description.reflection;
   material.transmission = description.transmission;
+  material.ambient_as_diffuse = !description.ambient.has_value();
   material.index = static_cast<float>(description.index_of_refraction);
+  material.inverse_index = static_cast<float>(1 / description.index_of_refraction);
   material.has_diffuse = !is_black(material.diffuse.largest());
   material.has_highlight = !is_black(material.highlight);
   material.has_reflection = !is_black(material.reflection);

@@ -41,9 +41,11 @@ struct Material {
   Rgb reflection;      ///< k_s
   Rgb transmission;    ///< k_t
   float index = 1;     ///< of the inside over the outside
+  float inverse_index = 1;
   bool has_diffuse = false, has_highlight = false, has_reflection = false, has_transmission = false;
-  bool fresnel = false;        ///< k_s F and k_t (1 - F)
-  bool needs_texture = false;  ///< some pattern looks at texture coordinates
+  bool ambient_as_diffuse = true;  ///< the ambient pattern is the diffuse one
+  bool fresnel = false;            ///< k_s F and k_t (1 - F)
+  bool needs_texture = false;      ///< some pattern looks at texture coordinates
 };
 
 /// `scene_origin`: see ShapeSet::origin. `fresnel`: the scene's switch.

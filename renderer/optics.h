@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/surface.h"
 #include "geometry/vec.h"
 
 namespace raytree {
@@ -13,23 +14,21 @@ namespace raytree {
 /// Whitted's R = V' + 2 N, V' = V / |V.N|, made unit.
 template <class Vec>
 Vec reflected_direction(const Vec& direction, const Vec& normal) {
-  return direction - normal * (2 * direction.dot(normal));
+  return renormalized(direction - normal * (2 * direction.dot(normal)));
 }
 
-/// Refracted direction, unit; none at total internal reflection. `relative_index`: k_n, index of the side that the ray
-/// enters over that of the side it comes from, so sin t = sin i / k_n. Equals Whitted's P = k_f (N + V') - N made unit,
+/// Refracted direction, unit; none at total internal reflection. `eta`: 1 / k_n, the index of the side that the ray
+/// comes from over that of the side it enters, so sin t = eta sin i. Equals Whitted's P = k_f (N + V') - N made unit,
 /// without his division by V.N, which overflows at grazing incidence (tests/renderer/optics_test.cpp holds one to the
 /// other).
 template <class Vec>
-std::optional<Vec> refracted_direction(const Vec& direction, const Vec& normal, typename Vec::BaseType relative_index) {
+std::optional<Vec> refracted_direction(const Vec& direction, const Vec& normal, typename Vec::BaseType eta) {
   using Real = typename Vec::BaseType;
-  const Real eta = 1 / relative_index;
   const Real cos_i = -direction.dot(normal);
   const Real sin_t_squared = eta * eta * std::max(Real(0), 1 - cos_i * cos_i);
   if (sin_t_squared >= 1) return std::nullopt;
   const Real cos_t = std::sqrt(1 - sin_t_squared);
-  const Vec refracted = direction * eta + normal * (eta * cos_i - cos_t);
-  return refracted * (1 / std::sqrt(refracted.dot(refracted)));
+  return renormalized(direction * eta + normal * (eta * cos_i - cos_t));
 }
 
 /// Share of unpolarized light that a dielectric surface reflects: the mean of R_s and R_p. cos_i in [0, 1]; 1 at total

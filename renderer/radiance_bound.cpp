@@ -12,15 +12,20 @@ constexpr int kTableLevels = 1024;
 /// The bound is computed in float as the radiance is; this covers the rounding of both over a deep tree.
 constexpr float kRounding = 1 + 0x1p-16f;
 
+/// Stands for "no bound": infinity times the black channel of a weight would be NaN.
+constexpr float kLargest = std::numeric_limits<float>::max();
+
+Rgb at_most_largest(Rgb c) { return {std::min(c.r, kLargest), std::min(c.g, kLargest), std::min(c.b, kLargest)}; }
+
 Rgb largest_recursion(const Material& material) {
   // With Fresnel the weights are k_s F and k_t (1 - F): a mean of k_s and k_t, at most the larger.
   return material.fresnel ? max(material.reflection, material.transmission)
                           : material.reflection + material.transmission;
 }
 
-float channel_limit(float background, float local, float recursion) {
-  if (recursion >= 1) return local > 0 || background > 0 ? std::numeric_limits<float>::infinity() : 0.0f;
-  return std::max(background, local / (1 - recursion));
+/// Limit of the recurrence that one material gives: the fixed point of E + rho B, none where rho >= 1.
+float channel_limit(float local, float recursion) {
+  return recursion < 1 ? std::min(kLargest, local / (1 - recursion)) : kLargest;
 }
 
 }  // namespace
@@ -40,13 +45,14 @@ RadianceBound::RadianceBound(std::span<const Material> materials, std::span<cons
     const Rgb recursion = largest_recursion(material) * kRounding;
     locals.push_back(local);
     recursions.push_back(recursion);
-    limit_ = max(limit_, {channel_limit(seen.r, local.r, recursion.r), channel_limit(seen.g, local.g, recursion.g),
-                          channel_limit(seen.b, local.b, recursion.b)});
+    limit_ = max(limit_, {channel_limit(local.r, recursion.r), channel_limit(local.g, recursion.g),
+                          channel_limit(local.b, recursion.b)});
   }
   Rgb below;
   for (int k = 0; k < std::min(depth, kTableLevels); ++k) {
     Rgb bound = seen;
-    for (std::size_t m = 0; m < locals.size(); ++m) bound = max(bound, locals[m] + recursions[m] * below);
+    for (std::size_t m = 0; m < locals.size(); ++m)
+      bound = max(bound, at_most_largest(locals[m] + recursions[m] * below));
     table_.push_back(bound);
     below = bound;
   }

@@ -20,7 +20,8 @@ class RadianceBound {
   RadianceBound(std::span<const Material> materials, std::span<const Light> lights, const BackgroundLight& background,
                 Rgb ambient, int depth);
 
-  /// Bound for a ray that may still have `levels_below` levels behind its hit; negative: 0. May be infinite.
+  /// Bound for a ray that may still have `levels_below` levels behind its hit; negative: 0. The largest
+  /// float where there is no bound.
   Rgb operator()(int levels_below) const {
     if (levels_below < 0) return Rgb();
     const auto k = static_cast<std::size_t>(levels_below);
@@ -29,7 +30,7 @@ class RadianceBound {
 
  private:
   std::vector<Rgb> table_;
-  Rgb limit_;  ///< of the recurrence; infinite where rho >= 1
+  Rgb limit_;  ///< of the recurrence; the largest float where rho >= 1
 };
 
 }  // namespace raytree

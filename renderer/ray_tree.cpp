@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "renderer/features.h"
 #include "renderer/shading.h"
@@ -54,7 +55,7 @@ struct TileTracer::State {
         occluded(kBatchSize + kBatchPadding),
         shadow_samples(kBatchSize),
         shadow_light(kBatchSize),
-        contexts(kBatchSize),
+        eye_rays(kBatchSize),
         radiance(kBatchSize),
         truncation(kBatchSize),
         ray_counts(kBatchSize),
@@ -86,7 +87,6 @@ struct TileTracer::State {
   bool finish_chunk();
   void trace_batch(Coherence coherence, bool eye);
   void collect_hits(bool eye);
-  void add_ambient();
   void add_lights();
   void spawn();
   void spawn_child(const BatchPoint& point, const Vec3f& direction, const Rgb& weight, float allowance, bool refracted);
@@ -106,9 +106,10 @@ struct TileTracer::State {
   std::vector<std::uint32_t> shadow_samples;
   std::vector<Rgb> shadow_light;  ///< what a shadow ray brings when nothing is in its way
 
-  std::vector<PendingRay> contexts;  ///< [rays.size] of the batch under way
-  std::vector<BatchPoint> points;    ///< hits of the batch under way
-  std::vector<PendingRay> pending;   ///< the newest rays are traced first
+  std::vector<PendingRay> eye_rays;      ///< contexts of the chunk's eye rays
+  const PendingRay* contexts = nullptr;  ///< [rays.size] of the batch under way; read before children are spawned
+  std::vector<BatchPoint> points;        ///< hits of the batch under way
+  std::vector<PendingRay> pending;       ///< the newest rays are traced first
 
   // The chunk of samples under way.
   std::size_t chunk_size = 0;
@@ -162,7 +163,7 @@ void TileTracer::State::add_eye_sample(float x, float y, int pixel, bool center)
   Vec3f origin, direction;
   scene.camera.ray(x, y, origin, direction);
   rays.set(i, origin, direction, std::numeric_limits<float>::infinity());
-  contexts[i] = {origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint32_t>(i), Rgb(1), 1, 0};
+  eye_rays[i] = {origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint32_t>(i), Rgb(1), 1, 0};
   radiance[i] = truncation[i] = Rgb();
   ray_counts[i] = 1;
   pixel_of_sample[i] = static_cast<std::uint16_t>(pixel);
@@ -174,18 +175,18 @@ bool TileTracer::State::finish_chunk() {
   rays.size = chunk_size;
   statistics.rays[static_cast<int>(RayKind::primary)] += chunk_size;
   statistics.samples += chunk_size;
+  contexts = eye_rays.data();
   trace_batch(Coherence::coherent, true);
   while (!pending.empty()) {
     if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) return false;
     const std::size_t count = std::min(kBatchSize, pending.size());
-    const PendingRay* first = pending.data() + pending.size() - count;
+    contexts = pending.data() + pending.size() - count;
     for (std::size_t i = 0; i < count; ++i) {
-      const PendingRay& ray = contexts[i] = first[i];
+      const PendingRay& ray = contexts[i];
       rays.set(i, ray.origin, ray.direction, std::numeric_limits<float>::infinity());
       if (counts_rays) ++ray_counts[ray.sample];
     }
     rays.size = count;
-    pending.resize(pending.size() - count);
     trace_batch(Coherence::incoherent, false);
   }
   for (std::size_t i = 0; i < chunk_size; ++i) {
@@ -211,7 +212,7 @@ void TileTracer::State::trace_batch(Coherence coherence, bool eye) {
   const auto hit = Clock::now();
   const double intersection_before = statistics.intersection_seconds;
   collect_hits(eye);
-  add_ambient();
+  if (!eye) pending.resize(pending.size() - rays.size);
   add_lights();
   spawn();
   const double shadow_seconds = statistics.intersection_seconds - intersection_before;
@@ -225,7 +226,10 @@ void TileTracer::State::collect_hits(bool eye) {
   for (std::size_t i = 0; i < rays.size; ++i) {
     const PendingRay& ray = contexts[i];
     if (hits.geometry[i] == kNoGeometry) {
-      radiance[ray.sample] += ray.weight * scene.background.along(ray.direction);
+      // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
+      const Vec3f poison = (ray.origin + ray.direction) * 0.0f;
+      radiance[ray.sample] +=
+          ray.weight * scene.background.along(ray.direction) + Rgb(poison.x + poison.y + poison.z);
       continue;
     }
     const Hit hit = hits[i];
@@ -236,14 +240,11 @@ void TileTracer::State::collect_hits(bool eye) {
         BatchPoint{shading_point(surface, ray.direction, material), ray.weight, ray.allowance, ray.sample, ray.level});
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && !eye)
       point.weight *= segment_attenuation(static_cast<float>(settings.distance_attenuation), surface.distance);
+    radiance[ray.sample] +=
+        point.weight * scene.ambient *
+        (material.ambient_as_diffuse ? point.shading.diffuse : material.ambient.at(point.shading.surface));
     if (eye && records_first_hit) record_first_hit(point, hit, shape);
   }
-}
-
-void TileTracer::State::add_ambient() {
-  if (is_black(scene.ambient)) return;
-  for (const BatchPoint& point : points)
-    radiance[point.sample] += point.weight * scene.ambient * point.shading.material->ambient.at(point.shading.surface);
 }
 
 void TileTracer::State::add_lights() {
@@ -361,6 +362,10 @@ void TileTracer::State::resolve_tile(int x0, int y0, int samples_per_pixel) {
         pixels[static_cast<std::size_t>(y - window.y0) * window.width + (x - window.x0)] =
             static_cast<float>(value((y - y0) * kTileSize + (x - x0)));
   };
+  // Colors are judged sample by sample; what else may not be a number, since some input was not, becomes 0 here.
+  const auto finite = [](double value) {
+    return std::abs(value) <= std::numeric_limits<float>::max() ? value : 0.0;
+  };
   const auto write_ids = [&](ChannelGroup group, auto&& value) {
     std::uint32_t* pixels = film.id_plane(group);
     for (int y = top; y < bottom; ++y)
@@ -375,15 +380,15 @@ void TileTracer::State::resolve_tile(int x0, int y0, int samples_per_pixel) {
     write(ChannelGroup::color, 2, [&](int i) { return color_sum[i].b * scale; });
   }
   if (channels.has(ChannelGroup::truncation)) {
-    write(ChannelGroup::truncation, 0, [&](int i) { return truncation_sum[i].r * scale; });
-    write(ChannelGroup::truncation, 1, [&](int i) { return truncation_sum[i].g * scale; });
-    write(ChannelGroup::truncation, 2, [&](int i) { return truncation_sum[i].b * scale; });
+    write(ChannelGroup::truncation, 0, [&](int i) { return finite(truncation_sum[i].r * scale); });
+    write(ChannelGroup::truncation, 1, [&](int i) { return finite(truncation_sum[i].g * scale); });
+    write(ChannelGroup::truncation, 2, [&](int i) { return finite(truncation_sum[i].b * scale); });
   }
   if (channels.has(ChannelGroup::alpha))
     write(ChannelGroup::alpha, 0, [&](int i) { return first_hits[i].count * scale; });
   if (channels.has(ChannelGroup::depth))
     write(ChannelGroup::depth, 0, [&](int i) {
-      return first_hits[i].count > 0 ? first_hits[i].depth / first_hits[i].count
+      return first_hits[i].count > 0 ? finite(first_hits[i].depth / first_hits[i].count)
                                      : std::numeric_limits<double>::infinity();
     });
   if (channels.has(ChannelGroup::normal))
@@ -391,12 +396,12 @@ void TileTracer::State::resolve_tile(int x0, int y0, int samples_per_pixel) {
       write(ChannelGroup::normal, axis, [&](int i) {
         const double* n = first_hits[i].normal;
         const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        return length > 0 ? n[axis] / length : 0.0;
+        return length > 0 ? finite(n[axis] / length) : 0.0;
       });
   if (channels.has(ChannelGroup::albedo))
     for (int c = 0; c < 3; ++c)
       write(ChannelGroup::albedo, c,
-            [&](int i) { return first_hits[i].count > 0 ? first_hits[i].albedo[c] / first_hits[i].count : 0.0; });
+            [&](int i) { return first_hits[i].count > 0 ? finite(first_hits[i].albedo[c] / first_hits[i].count) : 0.0; });
   if (channels.has(ChannelGroup::object_id))
     write_ids(ChannelGroup::object_id, [&](int i) { return first_hits[i].object; });
   if (channels.has(ChannelGroup::material_id))

@@ -1,5 +1,6 @@
 #include "renderer/render.h"
 
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -52,7 +53,12 @@ std::uint64_t RenderStatistics::total_rays() const {
 RenderResult render(const Scene& scene, const RenderOptions& options) {
   const ImageDescription& image = scene.description.image;
   PixelWindow window = options.window;
-  if (window.width == 0) window = {0, 0, image.width, image.height};
+  if (window.width == 0 && window.height == 0) window = {0, 0, image.width, image.height};
+  if (window.x0 < 0 || window.y0 < 0 || window.width <= 0 || window.height <= 0 ||
+      window.width > image.width - window.x0 || window.height > image.height - window.y0)
+    throw Error(ErrorKind::bad_input, {scene.description.name, 0, "image"},
+                fmt::format("the window {}x{}+{}+{} does not lie in the frame of {}x{}", window.width, window.height,
+                            window.x0, window.y0, image.width, image.height));
 
   RenderResult result{Film(image.width, image.height, window, options.channels), {}, true};
   const std::vector<TilePlace> tiles = tiles_of(window, options.tile_order_seed);

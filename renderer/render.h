@@ -55,7 +55,8 @@ struct RenderResult {
   bool complete = true;  ///< false: stopped; tiles not traced are 0
 };
 
-/// Renders the scene's image. Does not throw once tracing has begun.
+/// Renders the scene's image. Throws Error (bad_input) for a window that does not lie in the frame; does not throw once
+/// tracing has begun.
 RenderResult render(const Scene& scene, const RenderOptions& options);
 
 }  // namespace raytree

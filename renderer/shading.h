@@ -88,10 +88,11 @@ inline Branches branches(const ShadingPoint& point) {
   Branches result;
   float reflectance = 1;
   if (material.has_transmission || material.fresnel) {
-    const float relative_index = point.leaving ? 1 / material.index : material.index;
+    const float relative_index = point.leaving ? material.inverse_index : material.index;
+    const float eta = point.leaving ? material.index : material.inverse_index;
     if (material.fresnel) reflectance = fresnel_reflectance(std::min(cosine, 1.0f), relative_index);
     if (material.has_transmission)
-      if (const auto refracted = refracted_direction(point.direction, normal, relative_index)) {
+      if (const auto refracted = refracted_direction(point.direction, normal, eta)) {
         result.refracted = kept_on_side(*refracted, -side);
         result.refracted_weight = material.fresnel ? material.transmission * (1 - reflectance) : material.transmission;
       }

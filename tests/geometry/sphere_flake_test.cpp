@@ -92,14 +92,14 @@ TEST(SphereFlake, SixChildrenOnTheEquatorAndThreeAbove) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(above[i], 45 + 120.0 * double(i), 1e-4);
 }
 
-// The six on the equator are exactly 4/3 / 2 / (1/3) = 2 child diameters apart in chord, so siblings never overlap: the
-// least distance of two sibling centers is min(equator neighbors 4/3, equator to upper 4/3 sqrt(2 - 2 cos)) >= 2/3.
+// Neighbors on the equator stand 60 degrees apart; an upper child and the equator's nearest have the angle of cosine
+// cos(30) sqrt(1/3) = 1/2, 60 degrees again. So the least distance of two centers is the chord 4/3, twice 2/3 that two
+// radii of 1/3 take.
 TEST(SphereFlake, SiblingsDoNotOverlap) {
   const SphereArrays spheres = make_sphere_flake(flake(1));
   double least = 10;
   for (std::size_t i = 1; i < 10; ++i)
     for (std::size_t j = i + 1; j < 10; ++j) least = std::min(least, distance(spheres.centers[i], spheres.centers[j]));
-  // Upper child against the two equator children 30 degrees of azimuth away: cos = cos(30) sqrt(1/3) = 1/2.
   EXPECT_NEAR(least, 4.0 / 3, kCenterError);
   EXPECT_GE(least, 2.0 / 3);
 }
@@ -132,6 +132,31 @@ TEST(SphereFlake, SameBitsForAnyNumberOfThreads) {
   const SphereArrays one = made_with(1), three = made_with(3);
   EXPECT_EQ(std::memcmp(one.centers.data(), three.centers.data(), one.centers.size() * sizeof(Vec3f)), 0);
   EXPECT_EQ(std::memcmp(one.radii.data(), three.radii.data(), one.radii.size() * sizeof(float)), 0);
+}
+
+// Published: lines of the output of SPD's program (balls -s 4 and -s 6), x y z with z up, six digits. Those of level 6
+// are children of spheres whose axis lies near -z and near +z, where a frame could be turned in several ways.
+TEST(SphereFlake, EqualsPublishedSpheres) {
+  struct Published {
+    int levels;
+    std::size_t index;
+    double x, y, z, radius;
+  };
+  const Published published[] = {
+      {4, 1, 0.272166, 0.272166, 0.544331, 0.166667},        {4, 2, 0.420314, 0.420314, 0.618405, 0.0555556},
+      {4, 3, 0.470715, 0.470715, 0.598245, 0.0185185},       {4, 5, 0.475329, 0.45787, 0.577669, 0.00617284},
+      {4, 12, 0.488174, 0.453255, 0.598245, 0.00617284},     {4, 13, 0.461623, 0.409245, 0.557924, 0.0185185},
+      {6, 27473, 0.209389, 0.403216, 0.793129, 0.000685871}, {6, 27474, 0.207859, 0.402806, 0.795369, 0.000685871},
+      {6, 27513, 0.211686, 0.403156, 0.81407, 0.000685871},  {6, 27516, 0.209036, 0.402446, 0.81407, 0.000685871}};
+  const SphereArrays four = make_sphere_flake(flake(4, 0.5)), six = make_sphere_flake(flake(6, 0.5));
+  for (const Published& sphere : published) {
+    const SphereArrays& spheres = sphere.levels == 4 ? four : six;
+    const Vec3f& center = spheres.centers[sphere.index];
+    EXPECT_NEAR(center.x, sphere.x, 6e-7) << sphere.levels << ' ' << sphere.index;
+    EXPECT_NEAR(center.y, sphere.z, 6e-7) << sphere.levels << ' ' << sphere.index;
+    EXPECT_NEAR(center.z, -sphere.y, 6e-7) << sphere.levels << ' ' << sphere.index;
+    EXPECT_NEAR(spheres.radii[sphere.index], sphere.radius, 6e-7);
+  }
 }
 
 // Published: the output of SPD's program at its default size, sphere by sphere and in its order. Its text has six

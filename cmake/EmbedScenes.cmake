@@ -1,0 +1,22 @@
+# Script: writes a C++ source that holds scene files. cmake -DOUTPUT=out.cpp -DSCENES=a.json,b.json -P EmbedScenes.cmake
+# A C++ compiler must accept string literals of 65536 bytes at least; longer texts are split.
+string(REPLACE "," ";" scenes "${SCENES}")
+set(text "// Made of scenes/*.json by cmake/EmbedScenes.cmake.\n#include \"renderer/builtin_scenes.h\"\n\n")
+string(APPEND text "namespace raytree {\n\nconst std::vector<EmbeddedScene>& embedded_scenes() {\n")
+string(APPEND text "  static const std::vector<EmbeddedScene> scenes{\n")
+foreach(scene IN LISTS scenes)
+  get_filename_component(name "${scene}" NAME_WE)
+  # Brackets and semicolons mean something to CMake's lists: file(READ) into one string and never treat it as a list.
+  file(READ "${scene}" content)
+  string(LENGTH "${content}" length)
+  string(APPEND text "      {\"${name}\",\n")
+  set(begin 0)
+  while(begin LESS length)
+    string(SUBSTRING "${content}" ${begin} 8000 part)
+    string(APPEND text "       R\"scene(${part})scene\"\n")
+    math(EXPR begin "${begin} + 8000")
+  endwhile()
+  string(APPEND text "      },\n")
+endforeach()
+string(APPEND text "  };\n  return scenes;\n}\n\n}  // namespace raytree\n")
+file(WRITE "${OUTPUT}" "${text}")

@@ -1,0 +1,549 @@
+// The OBJ reader: one parallel pass counts, so that every array is allocated once at its final size, and a second one
+// parses into place. What a chunk of the text finds is kept per chunk and joined in file order, so results, warnings
+// and the error reported never depend on threads.
+#include "geometry/obj_reader.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "geometry/mesh_checks.h"
+#include "geometry/text_scanning.h"
+
+namespace raytree {
+namespace {
+
+using namespace text;
+
+enum class Statement {
+  none,  // blank or comment
+  position,
+  normal,
+  texture_coordinates,
+  face,
+  group,
+  material,
+  silent,  // concerns other programs or the next reader: smoothing groups and display hints
+  library,
+  line_or_point,
+  free_form,
+  unknown
+};
+
+/// The statement's kind by its first word; `p` moves behind that word.
+Statement classify(const char*& p, const char* end) {
+  p = skip_blanks(p, end);
+  if (p == end || *p == '#') return Statement::none;
+  const char* word_end = p;
+  while (word_end != end && !is_space(*word_end) && *word_end != '#') ++word_end;
+  const std::string_view word(p, static_cast<std::size_t>(word_end - p));
+  p = word_end;
+  if (word == "v") return Statement::position;
+  if (word == "f") return Statement::face;
+  if (word == "vn") return Statement::normal;
+  if (word == "vt") return Statement::texture_coordinates;
+  if (word == "g" || word == "o") return Statement::group;
+  if (word == "usemtl") return Statement::material;
+  if (word == "mtllib") return Statement::library;
+  if (word == "l" || word == "p") return Statement::line_or_point;
+  for (const std::string_view other : {"s", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib",
+                                       "shadow_obj", "trace_obj", "ctech", "stech", "call", "csh"})
+    if (word == other) return Statement::silent;
+  for (const std::string_view other : {"vp",   "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim",
+                                       "hole", "scrv",   "sp",  "end",  "con",  "bzp",  "bsp",   "cdc",  "cdp",  "res"})
+    if (word == other) return Statement::free_form;
+  return Statement::unknown;
+}
+
+/// Calls statement(kind, begin, end, source) for each logical line; [begin, end) follows the first word, `source` is
+/// the place in the text for messages. Continued lines are joined in a scratch string. Stops when it returns false.
+template <class Function>
+void for_each_statement(const char* p, const char* const end, char newline, Function&& statement) {
+  std::string joined;
+  while (p != end) {
+    const char* line_end = static_cast<const char*>(std::memchr(p, newline, static_cast<std::size_t>(end - p)));
+    const char* next = line_end ? line_end + 1 : end;
+    if (!line_end) line_end = end;
+    const char* begin = p;
+    const char* const source = p;
+    const auto continued = [](const char* from, const char* to) {
+      while (to > from && to[-1] == '\r') --to;
+      return to > from && to[-1] == '\\';
+    };
+    if (continued(p, line_end) && *skip_blanks(p, line_end) != '#') {
+      joined.clear();
+      for (;;) {
+        const char* to = line_end;
+        const bool more = continued(p, to);
+        if (more) {
+          while (to[-1] == '\r') --to;
+          --to;
+        }
+        joined.append(p, to);
+        joined += ' ';
+        p = next;
+        if (!more || p == end) break;
+        line_end = static_cast<const char*>(std::memchr(p, newline, static_cast<std::size_t>(end - p)));
+        next = line_end ? line_end + 1 : end;
+        if (!line_end) line_end = end;
+      }
+      begin = joined.data();
+      line_end = joined.data() + joined.size();
+    }
+    const Statement kind = classify(begin, line_end);
+    if (kind != Statement::none && !statement(kind, begin, line_end, source)) return;
+    p = next;
+  }
+}
+
+struct Counts {
+  std::size_t positions = 0, normals = 0, texture_coordinates = 0, faces = 0, corners = 0;
+  bool all_triangles = true, names_normals = false, names_texture = false;
+
+  void add(const Counts& other) {
+    positions += other.positions;
+    normals += other.normals;
+    texture_coordinates += other.texture_coordinates;
+    faces += other.faces;
+    corners += other.corners;
+    all_triangles = all_triangles && other.all_triangles;
+    names_normals = names_normals || other.names_normals;
+    names_texture = names_texture || other.names_texture;
+  }
+};
+
+void count_face(const char* p, const char* end, Counts& counts) {
+  std::size_t corners = 0;
+  for (;;) {
+    p = skip_blanks(p, end);
+    if (p == end || *p == '#') break;
+    ++corners;
+    while (p != end && !is_blank(*p) && *p != '#') {
+      if (*p++ != '/') continue;
+      if (p != end && *p != '/' && !is_blank(*p)) counts.names_texture = true;
+      while (p != end && !is_blank(*p) && *p != '/' && *p != '#') ++p;
+      if (p != end && *p == '/' && p + 1 != end && !is_blank(p[1])) counts.names_normals = true;
+      if (p != end && *p == '/') ++p;
+    }
+  }
+  ++counts.faces;
+  counts.corners += corners;
+  counts.all_triangles = counts.all_triangles && corners == 3;
+}
+
+struct Tally {
+  std::int64_t count = 0;
+  const char* first = nullptr;
+  void add(const char* place) {
+    if (count++ == 0) first = place;
+  }
+  void add(const Tally& later) {
+    if (count == 0) first = later.first;
+    count += later.count;
+  }
+};
+
+/// The names in force from a face on; the names are places in the text, empty where the chunk has not set them.
+struct GroupChange {
+  std::size_t face;
+  const char* name;
+  const char* material;
+};
+
+/// Of a chunk: one every 16 bytes of text. More of them are no groups but an attack on memory.
+constexpr std::size_t kMaxChanges = kChunkBytes / 16;
+
+struct Findings {
+  const char* error_place = nullptr;
+  std::string error;
+  Tally extra_components, unknown, line_or_point, free_form, library, changes_dropped;
+  Bounds3d box;
+  std::vector<GroupChange> changes;
+  const char* last_name = nullptr;
+  const char* last_material = nullptr;
+};
+
+class ObjParser {
+ public:
+  ObjParser(std::string_view text, const std::string& name, Warnings& warnings)
+      : text_(text), name_(name), warnings_(warnings) {}
+
+  PolygonMesh parse() {
+    check_encoding();
+    borders_ = chunk_borders(text_, newline_);
+    const std::size_t chunk_count = borders_.size() - 1;
+    starts_.resize(chunk_count + 1);
+    tbb::parallel_for(std::size_t(0), chunk_count, [&](std::size_t i) { starts_[i + 1] = count_chunk(i); });
+    for (std::size_t i = 0; i < chunk_count; ++i) {
+      Counts sum = starts_[i];
+      sum.add(starts_[i + 1]);
+      starts_[i + 1] = sum;
+    }
+    totals_ = starts_.back();
+    allocate();
+    findings_.resize(chunk_count);
+    tbb::parallel_for(std::size_t(0), chunk_count, [&](std::size_t i) { parse_chunk(i); });
+    report_first_error();
+    move_origin();
+    join_groups();
+    join_warnings();
+    const MeshLocator locate{[this](std::size_t i) { return locate_statement(Statement::position, i); },
+                             [this](std::size_t i) { return locate_statement(Statement::face, i); }};
+    findings_ = {};
+    complete_corners(mesh_, locate, warnings_);
+    settle_mesh(mesh_, name_, locate, warnings_);
+    return std::move(mesh_);
+  }
+
+ private:
+  void check_encoding() {
+    if (text_.substr(0, 3) == "\xef\xbb\xbf") text_.remove_prefix(3);
+    if (text_.substr(0, 2) == "\xff\xfe" || text_.substr(0, 2) == "\xfe\xff")
+      throw Error(ErrorKind::bad_input, {name_, 1, {}}, "the file is UTF-16 text: save it as UTF-8");
+    // Files of old Macintosh programs end their lines with a carriage return alone.
+    if (text_.find('\n') == std::string_view::npos && text_.find('\r') != std::string_view::npos) newline_ = '\r';
+  }
+
+  Counts count_chunk(std::size_t chunk) const {
+    Counts counts;
+    for_each_statement(borders_[chunk], borders_[chunk + 1], newline_,
+                       [&](Statement kind, const char* p, const char* end, const char*) {
+                         if (kind == Statement::position)
+                           ++counts.positions;
+                         else if (kind == Statement::normal)
+                           ++counts.normals;
+                         else if (kind == Statement::texture_coordinates)
+                           ++counts.texture_coordinates;
+                         else if (kind == Statement::face)
+                           count_face(p, end, counts);
+                         return true;
+                       });
+    return counts;
+  }
+
+  void allocate() {
+    for (const std::size_t count : {totals_.positions, totals_.normals, totals_.texture_coordinates, totals_.corners})
+      if (count >= kNoIndex)
+        throw Error(ErrorKind::bad_input, {name_, 0, {}}, "more than 4294967294 vertices or corners in one mesh");
+    mesh_.positions.resize(totals_.positions);
+    mesh_.corners.resize(totals_.corners);
+    if (!totals_.all_triangles) mesh_.face_sizes.resize(totals_.faces);
+    if (totals_.names_normals) {
+      mesh_.normals.resize(totals_.normals);
+      mesh_.normal_corners.resize(totals_.corners);
+    }
+    if (totals_.names_texture) {
+      mesh_.texture_coordinates.resize(totals_.texture_coordinates);
+      mesh_.texture_corners.resize(totals_.corners);
+    }
+  }
+
+  /// Reads `count` numbers; returns the place after them, nullptr with `error` set otherwise.
+  static const char* scan_numbers(const char* p, const char* end, double* values, int count, int required,
+                                  std::string& error) {
+    for (int i = 0; i < count; ++i) {
+      p = skip_blanks(p, end);
+      if (p == end || *p == '#') {
+        if (i >= required) return p;
+        error = "expected " + std::to_string(required) + " numbers, found " + std::to_string(i);
+        return nullptr;
+      }
+      const char* const after = scan_double(p, end, values[i]);
+      if (!after || (after != end && !is_blank(*after) && *after != '#')) {
+        error = in_quotes(word_at(p, end)) + " is not a number";
+        return nullptr;
+      }
+      p = after;
+    }
+    return p;
+  }
+
+  /// Reads one index and checks it; `seen` of `total` elements stand before this line.
+  static const char* scan_index(const char* p, const char* end, std::size_t seen, std::size_t total, const char* what,
+                                std::uint32_t& index, std::string& error) {
+    std::int64_t value = 0;
+    const char* const after = scan_integer(p, end, value);
+    if (!after) {
+      error = in_quotes(word_at(p, end)) +
+              " is not a corner of a face (vertex, vertex/texture, vertex//normal or "
+              "vertex/texture/normal)";
+      return nullptr;
+    }
+    const std::int64_t zero_based = value > 0 ? value - 1 : static_cast<std::int64_t>(seen) + value;
+    if (value == 0 || zero_based < 0 || zero_based >= static_cast<std::int64_t>(total)) {
+      error = std::string("the face refers to ") + what + " " + std::to_string(value) + "; " +
+              (value == 0 ? std::string("indices begin at 1")
+                          : "there are " + std::to_string(value < 0 ? seen : total) +
+                                (value < 0 ? " before this line" : " in the file"));
+      return nullptr;
+    }
+    index = static_cast<std::uint32_t>(zero_based);
+    return after;
+  }
+
+  bool parse_face(const char* p, const char* end, Counts& at, std::string& error) {
+    const std::size_t first = at.corners;
+    for (;;) {
+      p = skip_blanks(p, end);
+      if (p == end || *p == '#') break;
+      const char* const corner = p;
+      std::uint32_t texture = kNoIndex, normal = kNoIndex;
+      p = scan_index(p, end, at.positions, totals_.positions, "vertex", mesh_.corners[at.corners], error);
+      if (!p) return false;
+      const auto corner_ends = [&] { return p == end || is_blank(*p) || *p == '#'; };
+      if (p != end && *p == '/') {
+        ++p;
+        if (!corner_ends() && *p != '/')
+          p = scan_index(p, end, at.texture_coordinates, totals_.texture_coordinates, "texture coordinates", texture,
+                         error);
+        if (!p) return false;
+        if (p != end && *p == '/') {
+          ++p;
+          if (!corner_ends()) p = scan_index(p, end, at.normals, totals_.normals, "normal", normal, error);
+          if (!p) return false;
+        }
+      }
+      if (!corner_ends()) {
+        error = in_quotes(word_at(corner, end)) + " is not a corner of a face";
+        return false;
+      }
+      if (totals_.names_texture) mesh_.texture_corners[at.corners] = texture;
+      if (totals_.names_normals) mesh_.normal_corners[at.corners] = normal;
+      ++at.corners;
+    }
+    if (!totals_.all_triangles) mesh_.face_sizes[at.faces] = static_cast<std::uint32_t>(at.corners - first);
+    ++at.faces;
+    return true;
+  }
+
+  bool parse_position(const char* p, const char* end, Vec3f& position, Findings& found, const char* source) {
+    double v[3];
+    p = scan_numbers(p, end, v, 3, 3, found.error);
+    if (!p) return false;
+    position = Vec3f(static_cast<float>(v[0] - mesh_.origin.x), static_cast<float>(v[1] - mesh_.origin.y),
+                     static_cast<float>(v[2] - mesh_.origin.z));
+    constexpr double kMax = std::numeric_limits<double>::max();
+    if (std::abs(v[0]) <= kMax && std::abs(v[1]) <= kMax && std::abs(v[2]) <= kMax)
+      found.box.extendBy(Vec3d(v[0], v[1], v[2]));
+    p = skip_blanks(p, end);
+    if (p != end && *p != '#') found.extra_components.add(source);
+    return true;
+  }
+
+  void parse_chunk(std::size_t chunk) {
+    Findings& found = findings_[chunk];
+    Counts at = starts_[chunk];
+    bool names_changed = false;
+    for_each_statement(borders_[chunk], borders_[chunk + 1], newline_,
+                       [&](Statement kind, const char* p, const char* end, const char* source) {
+                         bool good = true;
+                         switch (kind) {
+                           case Statement::position:
+                             good = parse_position(p, end, mesh_.positions[at.positions++], found, source);
+                             break;
+                           case Statement::normal:
+                             if (totals_.names_normals) {
+                               double v[3];
+                               good = scan_numbers(p, end, v, 3, 3, found.error) != nullptr;
+                               if (good)
+                                 mesh_.normals[at.normals] = Vec3f(static_cast<float>(v[0]), static_cast<float>(v[1]),
+                                                                   static_cast<float>(v[2]));
+                             }
+                             ++at.normals;
+                             break;
+                           case Statement::texture_coordinates:
+                             if (totals_.names_texture) {
+                               double v[2] = {0, 0};
+                               good = scan_numbers(p, end, v, 2, 1, found.error) != nullptr;
+                               if (good)
+                                 mesh_.texture_coordinates[at.texture_coordinates] =
+                                     Vec2f(static_cast<float>(v[0]), static_cast<float>(v[1]));
+                             }
+                             ++at.texture_coordinates;
+                             break;
+                           case Statement::face:
+                             if (names_changed)
+                               found.changes.push_back({at.faces, found.last_name, found.last_material});
+                             names_changed = false;
+                             good = parse_face(p, end, at, found.error);
+                             break;
+                           case Statement::group:
+                             found.last_name = source;
+                             names_changed = true;
+                             break;
+                           case Statement::material:
+                             found.last_material = source;
+                             names_changed = true;
+                             break;
+                           case Statement::library:
+                             found.library.add(source);
+                             break;
+                           case Statement::line_or_point:
+                             found.line_or_point.add(source);
+                             break;
+                           case Statement::free_form:
+                             found.free_form.add(source);
+                             break;
+                           case Statement::unknown:
+                             found.unknown.add(source);
+                             break;
+                           case Statement::silent:
+                           case Statement::none:
+                             break;
+                         }
+                         if (!good) found.error_place = source;
+                         return good;
+                       });
+  }
+
+  void report_first_error() const {
+    for (const Findings& found : findings_)
+      if (found.error_place) throw Error(ErrorKind::bad_input, location(found.error_place), found.error);
+  }
+
+  /// Positions were parsed about zero; where the rule asks for another origin they are parsed once more.
+  void move_origin() {
+    Bounds3d box;
+    for (const Findings& found : findings_) box.extendBy(found.box);
+    mesh_.origin = mesh_origin(box);
+    if (mesh_.origin == Vec3d(0, 0, 0)) return;
+    tbb::parallel_for(std::size_t(0), findings_.size(), [&](std::size_t chunk) {
+      std::size_t position = starts_[chunk].positions;
+      Findings ignored;
+      for_each_statement(borders_[chunk], borders_[chunk + 1], newline_,
+                         [&](Statement kind, const char* p, const char* end, const char* source) {
+                           return kind != Statement::position ||
+                                  parse_position(p, end, mesh_.positions[position++], ignored, source);
+                         });
+    });
+  }
+
+  /// What follows the first word of the statement at `source`, blanks trimmed, at most kMaxName bytes: every run of
+  /// faces holds a copy, so that a long name could multiply a file's size.
+  std::string name_at(const char* source) const {
+    constexpr std::ptrdiff_t kMaxName = 255;
+    std::string result;
+    if (!source) return result;
+    for_each_statement(source, text_.data() + text_.size(), newline_,
+                       [&](Statement, const char* p, const char* end, const char*) {
+                         p = skip_blanks(p, end);
+                         while (end > p && is_blank(end[-1])) --end;
+                         result.assign(p, std::min(end - p, kMaxName) + p);
+                         return false;
+                       });
+    return result;
+  }
+
+  void join_groups() {
+    // A run costs far more memory than the two short lines it may come from: beyond this many they are joined.
+    constexpr std::size_t kMaxGroups = std::size_t(1) << 18;
+    const char* name = nullptr;
+    const char* material = nullptr;
+    std::size_t dropped_from = 0;
+    const char* place = nullptr;
+    std::int64_t dropped = 0;
+    for (std::size_t chunk = 0; chunk < findings_.size(); ++chunk) {
+      Findings& found = findings_[chunk];
+      // Names set at the end of an earlier chunk, after its last face, hold from this chunk's first face on.
+      std::vector<GroupChange> changes = std::move(found.changes);
+      if (starts_[chunk + 1].faces > starts_[chunk].faces &&
+          (changes.empty() || changes.front().face != starts_[chunk].faces))
+        changes.insert(changes.begin(), {starts_[chunk].faces, nullptr, nullptr});
+      for (const GroupChange& change : changes) {
+        const char* const new_name = change.name ? change.name : name;
+        const char* const new_material = change.material ? change.material : material;
+        FaceGroup group{name_at(new_name), name_at(new_material), static_cast<std::uint32_t>(change.face), 0};
+        if (!mesh_.groups.empty() && mesh_.groups.back().name == group.name &&
+            mesh_.groups.back().material == group.material)
+          continue;
+        if (mesh_.groups.size() >= kMaxGroups) {
+          if (dropped++ == 0) {
+            dropped_from = change.face;
+            place = change.name ? change.name : change.material;
+          }
+          continue;
+        }
+        mesh_.groups.push_back(std::move(group));
+      }
+      if (found.last_name) name = found.last_name;
+      if (found.last_material) material = found.last_material;
+    }
+    if (dropped > 0)
+      warnings_.push_back(
+          {location(place ? place : text_.data()),
+           "groups beyond the first 262144 joined into one, from face " + std::to_string(dropped_from + 1) + " on",
+           dropped});
+    std::vector<FaceGroup>& groups = mesh_.groups;
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      groups[i].face_count = static_cast<std::uint32_t>(
+          (i + 1 < groups.size() ? groups[i + 1].first_face : totals_.faces) - groups[i].first_face);
+    if (groups.size() == 1 && groups[0].name.empty() && groups[0].material.empty()) groups.clear();
+  }
+
+  void join_warnings() {
+    Findings all;
+    for (const Findings& found : findings_) {
+      all.extra_components.add(found.extra_components);
+      all.unknown.add(found.unknown);
+      all.line_or_point.add(found.line_or_point);
+      all.free_form.add(found.free_form);
+      all.library.add(found.library);
+      all.changes_dropped.add(found.changes_dropped);
+    }
+    const auto warn = [&](const Tally& tally, const std::string& message) {
+      if (tally.count > 0) warnings_.push_back({location(tally.first), message, tally.count});
+    };
+    const char* const end = text_.data() + text_.size();
+    if (all.unknown.count > 0)
+      warn(all.unknown,
+           "unknown statements skipped, the first is " + in_quotes(word_at(skip_blanks(all.unknown.first, end), end)));
+    warn(all.changes_dropped, "groups of a text that names too many joined with the one before");
+    warn(all.line_or_point, "lines and points dropped: only faces are drawn");
+    warn(all.free_form, "statements of free-form curves and surfaces dropped");
+    warn(all.library, "material libraries not read");
+    warn(all.extra_components,
+         "vertices with more than three components, of which the others (weight or color) are "
+         "dropped");
+    if (!totals_.names_normals && totals_.normals > 0)
+      warnings_.push_back({locate_statement(Statement::normal, 0), "normals that no face uses dropped",
+                           static_cast<std::int64_t>(totals_.normals)});
+    if (!totals_.names_texture && totals_.texture_coordinates > 0)
+      warnings_.push_back({locate_statement(Statement::texture_coordinates, 0),
+                           "texture coordinates that no face uses dropped",
+                           static_cast<std::int64_t>(totals_.texture_coordinates)});
+  }
+
+  SourceLocation location(const char* place) const { return {name_, line_number(text_, place, newline_), {}}; }
+
+  SourceLocation locate_statement(Statement wanted, std::size_t number) const {
+    SourceLocation result{name_, 0, {}};
+    for_each_statement(text_.data(), text_.data() + text_.size(), newline_,
+                       [&](Statement kind, const char*, const char*, const char* source) {
+                         if (kind != wanted || number-- != 0) return true;
+                         result = location(source);
+                         return false;
+                       });
+    return result;
+  }
+
+  std::string_view text_;
+  const std::string& name_;
+  Warnings& warnings_;
+  char newline_ = '\n';
+  std::vector<const char*> borders_;
+  std::vector<Counts> starts_;  // what stands before chunk i; the last: in the whole text
+  Counts totals_;
+  std::vector<Findings> findings_;
+  PolygonMesh mesh_;
+};
+
+}  // namespace
+
+PolygonMesh read_obj(std::string_view text, const std::string& name, Warnings& warnings) {
+  return ObjParser(text, name, warnings).parse();
+}
+
+}  // namespace raytree

@@ -1,0 +1,299 @@
+// Vertex normals in three steps: unit face normals, the corners around each vertex (counting sort, corners in file
+// order), and per vertex the sums over the corners that belong together. Every sum runs in corner order, so the result
+// does not depend on threads.
+#include "geometry/vertex_normals.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "geometry/newell.h"
+
+namespace raytree {
+namespace {
+
+constexpr std::size_t kBlock = 4096;  // vertices or faces that one task takes
+
+/// Added to the cosine of a crease angle: unit normals in float are off by up to 1e-7, the product of two of them by
+/// 2e-7 or less; faces that meet at exactly the crease angle count as smooth.
+constexpr double kCosineTolerance = 4e-7;
+
+/// Faces as runs of corners: fixed size 3, or sizes with running starts.
+class Faces {
+ public:
+  explicit Faces(const PolygonMesh& mesh) : mesh_(mesh) {
+    if (mesh.all_triangles()) return;
+    starts_.resize(mesh.face_count() + 1);
+    starts_[0] = 0;
+    std::inclusive_scan(mesh.face_sizes.begin(), mesh.face_sizes.end(), starts_.begin() + 1);
+  }
+  std::size_t count() const { return mesh_.face_count(); }
+  std::size_t begin(std::size_t face) const { return starts_.empty() ? 3 * face : starts_[face]; }
+  std::size_t end(std::size_t face) const { return begin(face + 1); }
+  std::size_t of_corner(std::size_t corner) const {
+    if (starts_.empty()) return corner / 3;
+    return static_cast<std::size_t>(std::upper_bound(starts_.begin(), starts_.end(), corner) - starts_.begin()) - 1;
+  }
+
+ private:
+  const PolygonMesh& mesh_;
+  Buffer<std::uint32_t> starts_;  // [face_count + 1]; empty: triangles
+};
+
+/// Unit, or zero for a face without area.
+Vec3f unit_face_normal(const PolygonMesh& mesh, std::size_t begin, std::size_t end) {
+  const Vec3d normal = newell_normal(mesh.positions.data(), mesh.corners.data() + begin, end - begin);
+  const double length = normal.length();
+  return length > 0 && std::isfinite(length) ? Vec3f(normal / length) : Vec3f(0, 0, 0);
+}
+
+template <class Function>
+void for_each_block(std::size_t count, const Function& function) {
+  tbb::parallel_for(std::size_t(0), (count + kBlock - 1) / kBlock,
+                    [&](std::size_t block) { function(block, block * kBlock, std::min(count, (block + 1) * kBlock)); });
+}
+
+/// The corners at one vertex, and how they fall into groups that share a normal.
+class VertexFan {
+ public:
+  VertexFan(const PolygonMesh& mesh, const Faces& faces, const Buffer<Vec3f>& face_normals, double crease_cosine)
+      : mesh_(mesh), faces_(faces), face_normals_(face_normals), crease_cosine_(crease_cosine) {}
+
+  /// Gathers the corners [begin, end) of one vertex; with_groups: joins those that meet smoothly across an edge.
+  void gather(const std::uint32_t* begin, const std::uint32_t* end, bool with_groups) {
+    corners_.clear();
+    for (const std::uint32_t* c = begin; c != end; ++c) {
+      const std::size_t face = faces_.of_corner(*c);
+      const std::size_t first = faces_.begin(face), last = faces_.end(face);
+      const std::uint32_t before = mesh_.corners[*c == first ? last - 1 : *c - 1];
+      const std::uint32_t after = mesh_.corners[*c + 1 == last ? first : *c + 1];
+      const Vec3f& normal = face_normals_[face];
+      const Vec3d vertex(mesh_.positions[mesh_.corners[*c]]);
+      const Vec3d to_after = Vec3d(mesh_.positions[after]) - vertex,
+                  to_before = Vec3d(mesh_.positions[before]) - vertex;
+      const Vec3d cross = to_after.cross(to_before);
+      double angle = std::atan2(cross.length(), to_after.dot(to_before));
+      // The inner angle of a reflex corner is beyond pi: its edges turn against the face's normal.
+      if (cross.dot(Vec3d(normal)) < 0) angle = 2 * std::numbers::pi - angle;
+      const bool has_area = normal.length2() > 0;
+      corners_.push_back({normal, has_area ? angle : 0.0, before, after, static_cast<std::uint32_t>(corners_.size())});
+    }
+    if (with_groups) join();
+  }
+
+  std::size_t size() const { return corners_.size(); }
+  std::size_t root(std::size_t i) {
+    while (corners_[i].group != i) i = corners_[i].group = corners_[corners_[i].group].group;
+    return i;
+  }
+
+  /// The unit normal of the group with this root (kAll: of all corners).
+  static constexpr std::size_t kAll = static_cast<std::size_t>(-1);
+  Vec3f normal(std::size_t group) {
+    Vec3d sum(0, 0, 0);
+    double widest = -1;
+    Vec3f fallback(0, 0, 0);
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      if (group != kAll && root(i) != group) continue;
+      sum += Vec3d(corners_[i].normal) * corners_[i].angle;
+      if (corners_[i].angle > widest && corners_[i].normal.length2() > 0) {
+        widest = corners_[i].angle;
+        fallback = corners_[i].normal;
+      }
+    }
+    // Faces that cancel each other (the two sides of a sheet) leave rounding only: 1e-6 of the angles is far above it.
+    const double length = sum.length();
+    if (length > 1e-6 * std::max(widest, 0.0) && length > 0) return Vec3f(sum / length);
+    if (fallback.length2() > 0) return fallback;
+    return Vec3f(0, 0, 1);  // no face with area here: nothing is seen of it
+  }
+
+ private:
+  struct Corner {
+    Vec3f normal;
+    double angle;
+    std::uint32_t before, after;  // the vertices at the ends of its two edges
+    std::uint32_t group;          // parent in the union of groups; a root is the group's first corner
+  };
+
+  bool is_smooth(const Corner& a, const Corner& b) const {
+    return Vec3d(a.normal).dot(Vec3d(b.normal)) >= crease_cosine_ && a.normal.length2() > 0 && b.normal.length2() > 0;
+  }
+  void unite(std::size_t a, std::size_t b) {
+    a = root(a);
+    b = root(b);
+    if (a != b) corners_[std::max(a, b)].group = static_cast<std::uint32_t>(std::min(a, b));
+  }
+
+  void join() {
+    edges_.clear();
+    for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+      edges_.push_back({corners_[i].before, i});
+      edges_.push_back({corners_[i].after, i});
+    }
+    std::sort(edges_.begin(), edges_.end());
+    const auto for_each_run = [&](const auto& function) {
+      for (std::size_t first = 0, last = 0; first < edges_.size(); first = last) {
+        for (last = first + 1; last < edges_.size() && edges_[last].first == edges_[first].first;) ++last;
+        function(first, last);
+      }
+    };
+    // An edge of very many faces is no surface: beyond kMaxPairs only successive ones are compared, to stay linear.
+    constexpr std::size_t kMaxPairs = 16;
+    bool has_flat = false;
+    for_each_run([&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        for (std::size_t k = i + 1; k < last && k <= i + (last - first <= kMaxPairs ? kMaxPairs : 1); ++k) {
+          const Corner &a = corners_[edges_[i].second], &b = corners_[edges_[k].second];
+          if (is_smooth(a, b)) unite(edges_[i].second, edges_[k].second);
+          has_flat = has_flat || a.angle == 0 || b.angle == 0;
+        }
+    });
+    if (!has_flat) return;
+    // A face without area parts nothing: it joins the first neighbor with area, and joins the neighbors on its two
+    // sides where they would be smooth without it.
+    partner_.assign(corners_.size(), kNone);
+    for_each_run([&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        for (std::size_t k = first; k < last && k < first + kMaxPairs; ++k) {
+          const std::uint32_t flat = edges_[i].second, other = edges_[k].second;
+          if (corners_[flat].angle != 0 || corners_[other].angle == 0) continue;
+          if (partner_[flat] == kNone) {
+            partner_[flat] = other;
+            unite(flat, other);
+          } else if (is_smooth(corners_[partner_[flat]], corners_[other])) {
+            unite(partner_[flat], other);
+          }
+        }
+    });
+  }
+
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  const PolygonMesh& mesh_;
+  const Faces& faces_;
+  const Buffer<Vec3f>& face_normals_;
+  double crease_cosine_;
+  std::vector<Corner> corners_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_;  // other end, corner
+  std::vector<std::uint32_t> partner_;
+};
+
+}  // namespace
+
+void compute_vertex_normals(PolygonMesh& mesh, double crease_angle) {
+  mesh.normals = {};
+  mesh.normal_corners = {};
+  const std::size_t vertex_count = mesh.positions.size(), corner_count = mesh.corners.size();
+  const Faces faces(mesh);
+  Buffer<Vec3f> face_normals;
+  face_normals.resize(faces.count());
+  for_each_block(faces.count(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t face = first; face < last; ++face)
+      face_normals[face] = unit_face_normal(mesh, faces.begin(face), faces.end(face));
+  });
+
+  // Corners sorted by vertex: starts[v] .. starts[v + 1] in `around`.
+  Buffer<std::uint32_t> starts, around;
+  starts.resize(vertex_count + 2);
+  std::fill(starts.begin(), starts.end(), 0u);
+  around.resize(corner_count);
+  for (const std::uint32_t vertex : mesh.corners) ++starts[vertex + 2];
+  std::inclusive_scan(starts.begin(), starts.end(), starts.begin());
+  // Shifted by one place, the running starts of the fill become the starts themselves.
+  for (std::size_t corner = 0; corner < corner_count; ++corner)
+    around[starts[mesh.corners[corner] + 1]++] = static_cast<std::uint32_t>(corner);
+
+  if (crease_angle >= std::numbers::pi) {
+    mesh.normals.resize(vertex_count);
+    for_each_block(vertex_count, [&](std::size_t, std::size_t first, std::size_t last) {
+      VertexFan fan(mesh, faces, face_normals, -1);
+      for (std::size_t v = first; v < last; ++v) {
+        fan.gather(&around[starts[v]], &around[0] + starts[v + 1], false);
+        mesh.normals[v] = fan.normal(VertexFan::kAll);
+      }
+    });
+    return;
+  }
+
+  const double crease_cosine = std::cos(std::max(crease_angle, 0.0)) - kCosineTolerance;
+  const std::size_t blocks = (vertex_count + kBlock - 1) / kBlock;
+  std::vector<std::vector<Vec3f>> block_normals(blocks);
+  mesh.normal_corners.resize(corner_count);
+  for_each_block(vertex_count, [&](std::size_t block, std::size_t first, std::size_t last) {
+    VertexFan fan(mesh, faces, face_normals, crease_cosine);
+    std::vector<Vec3f>& normals = block_normals[block];
+    normals.reserve(last - first);
+    std::vector<std::uint32_t> numbers;  // of the groups, at their roots
+    for (std::size_t v = first; v < last; ++v) {
+      const std::uint32_t* const begin = around.data() + starts[v];
+      fan.gather(begin, around.data() + starts[v + 1], true);
+      numbers.resize(fan.size());
+      for (std::size_t i = 0; i < fan.size(); ++i) {
+        const std::size_t root = fan.root(i);
+        if (root == i) {
+          numbers[i] = static_cast<std::uint32_t>(normals.size());
+          normals.push_back(fan.normal(i));
+        }
+        mesh.normal_corners[begin[i]] = numbers[root];
+      }
+      if (fan.size() == 0) normals.push_back(Vec3f(0, 0, 1));  // keeps one normal per position possible
+    }
+  });
+
+  std::vector<std::uint32_t> block_starts(blocks + 1, 0);
+  for (std::size_t block = 0; block < blocks; ++block)
+    block_starts[block + 1] = block_starts[block] + static_cast<std::uint32_t>(block_normals[block].size());
+  mesh.normals.resize(block_starts[blocks]);
+  for_each_block(vertex_count, [&](std::size_t block, std::size_t, std::size_t) {
+    std::copy(block_normals[block].begin(), block_normals[block].end(), mesh.normals.begin() + block_starts[block]);
+    block_normals[block] = {};
+  });
+  if (mesh.normals.size() == vertex_count) {
+    mesh.normal_corners = {};
+    return;
+  }
+  for_each_block(corner_count, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t c = first; c < last; ++c) mesh.normal_corners[c] += block_starts[mesh.corners[c] / kBlock];
+  });
+}
+
+std::int64_t normalize_vertex_normals(PolygonMesh& mesh) {
+  const std::size_t count = mesh.normals.size();
+  std::vector<std::vector<std::uint32_t>> block_bad((count + kBlock - 1) / kBlock);
+  for_each_block(count, [&](std::size_t block, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3d normal(mesh.normals[i]);
+      const double length = normal.length();
+      if (length > 0 && std::isfinite(length))
+        mesh.normals[i] = Vec3f(normal / length);
+      else
+        block_bad[block].push_back(static_cast<std::uint32_t>(i));
+    }
+  });
+  std::vector<std::uint32_t> bad;
+  for (const auto& part : block_bad) bad.insert(bad.end(), part.begin(), part.end());
+  if (bad.empty()) return 0;
+
+  std::vector<bool> is_bad(count, false);
+  for (const std::uint32_t i : bad) {
+    is_bad[i] = true;
+    mesh.normals[i] = Vec3f(0, 0, 1);  // stays where no face with area uses it
+  }
+  const Buffer<std::uint32_t>& indices = mesh.normal_corners.empty() ? mesh.corners : mesh.normal_corners;
+  const Faces faces(mesh);
+  for (std::size_t face = 0; face < faces.count(); ++face)
+    for (std::size_t c = faces.begin(face); c < faces.end(face); ++c) {
+      if (!is_bad[indices[c]]) continue;
+      const Vec3f normal = unit_face_normal(mesh, faces.begin(face), faces.end(face));
+      if (normal.length2() == 0) break;
+      mesh.normals[indices[c]] = normal;
+      is_bad[indices[c]] = false;
+    }
+  return static_cast<std::int64_t>(bad.size());
+}
+
+}  // namespace raytree

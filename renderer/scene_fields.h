@@ -1,0 +1,505 @@
+// The tables of a scene file: for each struct of scene_description.h which key fills which member, what it means, in
+// which unit and range. Reader, writer, schema, --set and the reference in docs/scene-format.md all walk these
+// tables, so none can know a key that another does not. Defaults are those of default-constructed structs.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "renderer/scene_description.h"
+
+namespace raytree {
+
+/// Numbers beyond are refused: their squares would leave float, and Embree sees nothing past 1.8e18.
+inline constexpr double kLargestNumber = 1e18;
+inline constexpr std::int64_t kMaxPixels = std::int64_t(1) << 30;  ///< width * height
+inline constexpr int kMaxGridSize = 64;                            ///< of antialias "grid:N"
+
+/// What a number, or each component of a vector or color, may be.
+struct Range {
+  double low = -kLargestNumber;
+  double high = kLargestNumber;
+  bool low_open = false;   ///< `low` itself is refused
+  bool high_open = false;  ///< `high` itself is refused
+
+  constexpr bool holds(double x) const { return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high); }
+};
+inline constexpr Range kNotNegative{0};
+inline constexpr Range kPositive{0, kLargestNumber, true};
+
+/// One key: what everybody who walks a table is told about it.
+struct Field {
+  std::string_view key = {};
+  std::string_view text = {};    ///< for schema and reference; a sentence without its period
+  std::string_view unit = {};    ///< empty: none
+  Range range = {};              ///< of numbers
+  bool required = false;         ///< the reader refuses an object without it
+  bool nonzero = false;          ///< a vector that must not be (0, 0, 0)
+  std::string_view absent = {};  ///< what happens without the key, where no default value says so
+};
+
+// --- enumerations -------------------------------------------------------------------------------------------
+
+template <class E>
+struct EnumEntry {
+  E value;
+  std::string_view name;
+  std::string_view text;
+};
+
+template <class E>
+struct EnumTable;  // specialized below: `entries`
+
+template <>
+struct EnumTable<CameraDescription::Projection> {
+  using E = CameraDescription::Projection;
+  static constexpr std::array<EnumEntry<E>, 2> entries{
+      {{E::perspective, "perspective", "uses field_of_view"}, {E::orthographic, "orthographic", "uses height"}}};
+};
+template <>
+struct EnumTable<HighlightForm> {
+  using E = HighlightForm;
+  static constexpr std::array<EnumEntry<E>, 2> entries{
+      {{E::reflected, "reflected", "angle between reflected light and line of sight, Phong 1973, eq. 4.5"},
+       {E::halfway, "halfway", "angle between normal and halfway vector, Whitted 1980, eq. 1"}}};
+};
+template <>
+struct EnumTable<CheckerPattern::Plane> {
+  using E = CheckerPattern::Plane;
+  static constexpr std::array<EnumEntry<E>, 4> entries{{{E::xz, "xz", "world x and z, a floor"},
+                                                        {E::xy, "xy", "world x and y, a wall"},
+                                                        {E::yz, "yz", "world y and z, a side wall"},
+                                                        {E::uv, "uv", "the surface's texture coordinates"}}};
+};
+template <>
+struct EnumTable<NormalSource> {
+  using E = NormalSource;
+  static constexpr std::array<EnumEntry<E>, 3> entries{
+      {{E::file, "file", "the mesh's own; as smooth where it has none"},
+       {E::smooth, "smooth", "angle-weighted mean of the faces within crease_angle"},
+       {E::flat, "flat", "the face's own"}}};
+};
+
+// --- alternatives of a variant, told apart by the key "type" ------------------------------------------------
+
+inline constexpr std::string_view kTypeKey = "type";
+
+template <class T>
+struct Alternative;  // specialized below: `name` and `text`
+
+template <>
+struct Alternative<ConstantBackground> {
+  static constexpr std::string_view name = "constant", text = "one color in every direction";
+};
+template <>
+struct Alternative<GradientBackground> {
+  static constexpr std::string_view name = "gradient", text = "blend by the height of the direction";
+};
+template <>
+struct Alternative<DirectionalLight> {
+  static constexpr std::string_view name = "directional", text = "light at infinity (Whitted's and Phong's)";
+};
+template <>
+struct Alternative<PointLight> {
+  static constexpr std::string_view name = "point", text = "light from a point, the same at every distance";
+};
+template <>
+struct Alternative<CheckerPattern> {
+  static constexpr std::string_view name = "checker", text = "squares of two colors";
+};
+template <>
+struct Alternative<MeshShape> {
+  static constexpr std::string_view name = "mesh",
+                                    text = "polygons from `file`, or given here as `positions` and `faces`";
+};
+template <>
+struct Alternative<SphereShape> {
+  static constexpr std::string_view name = "sphere", text = "an exact sphere";
+};
+template <>
+struct Alternative<PlaneShape> {
+  static constexpr std::string_view name = "plane", text = "an infinite plane";
+};
+template <>
+struct Alternative<DiscShape> {
+  static constexpr std::string_view name = "disc", text = "a flat disc";
+};
+template <>
+struct Alternative<TerrainShape> {
+  static constexpr std::string_view name = "terrain",
+                                    text = "a fractal height field over the square [-size/2, size/2] in x and z";
+};
+template <>
+struct Alternative<SphereFlakeShape> {
+  static constexpr std::string_view name = "sphere_flake",
+                                    text = "a sphere that carries nine smaller ones, each of which carries nine";
+};
+
+// --- forms that exist in files only -------------------------------------------------------------------------
+
+/// The key "raytree": always kSceneVersion once read.
+struct SceneVersion {
+  int value = kSceneVersion;
+};
+
+/// Three factors, in a file also one number for all three.
+struct ScaleFactors {
+  Vec3d value{1, 1, 1};
+};
+
+/// One step of a shape's transform: scale, then rotate, then translate; or a matrix alone.
+struct TransformStep {
+  std::optional<ScaleFactors> scale;
+  std::optional<Vec3d> rotate;
+  std::optional<Vec3d> translate;
+  std::optional<Matrix44d> matrix;
+};
+
+/// Polygons as lists of indices, with the lines they stand on for messages (0: not from a file).
+struct FaceLists {
+  std::vector<std::uint32_t> sizes;
+  std::vector<std::uint32_t> corners;
+  std::vector<std::uint32_t> lines;
+};
+
+/// A polygon mesh as a scene file gives it.
+struct InlineMesh {
+  std::optional<Vec3d> origin;
+  std::vector<Vec3d> positions;
+  FaceLists faces;
+  std::vector<Vec3f> vertex_normals;
+  FaceLists normal_faces;
+  std::vector<Vec2f> texture_coordinates;
+  FaceLists texture_faces;
+  std::vector<FaceGroup> groups;
+};
+
+// --- the tables ---------------------------------------------------------------------------------------------
+// visit_fields(visit, object) calls visit(Field, member) for each key in the order of the reference,
+// visit.tagged(Field, variant) where the key "type" chooses among structs whose keys stand beside it, and
+// visit.inlined(mesh) where InlineMesh's keys stand for a PolygonMesh.
+
+template <class T, class Struct>
+concept Is = std::same_as<std::remove_const_t<T>, Struct>;
+
+template <class Visitor, Is<ImageDescription> T>
+void visit_fields(Visitor& visit, T& image) {
+  visit(
+      Field{.key = "width", .text = "Width; width times height is at most 2^30", .unit = "pixels", .range = {1, 65536}},
+      image.width);
+  visit(Field{.key = "height", .text = "Height", .unit = "pixels", .range = {1, 65536}}, image.height);
+}
+
+template <class Visitor, Is<RenderSettings> T>
+void visit_fields(Visitor& visit, T& render) {
+  visit(Field{.key = "depth", .text = "Levels of the ray tree; the eye ray is level 1", .range = {1, 1'000'000}},
+        render.depth);
+  visit(Field{.key = "cutoff",
+              .text = "Largest radiance per channel that cutting branches of the tree may take from a sample; 0 cuts "
+                      "none",
+              .unit = "radiance",
+              .range = kNotNegative},
+        render.cutoff);
+  visit(Field{.key = "antialias",
+              .text = "\"none\" traces pixel centers, \"grid:N\" the centers of N x N equal cells of a pixel, N from 1 "
+                      "to 64"},
+        render.antialias);
+  visit(Field{.key = "highlights", .text = "Form of the highlight"}, render.highlights);
+  visit(Field{.key = "shadows", .text = "Whether things cast shadows"}, render.shadows);
+  visit(Field{.key = "shadowed_highlights",
+              .text = "Whether a shadow takes the highlight too (Whitted names the diffuse term only)"},
+        render.shadowed_highlights);
+  visit(Field{.key = "fresnel",
+              .text = "Weights k_s F and k_t (1 - F) by Fresnel's formulas in place of constant k_s and k_t"},
+        render.fresnel);
+  visit(Field{.key = "distance_attenuation",
+              .text = "a of max(0, 1 - a t) on reflected and refracted segments; 0 is off",
+              .unit = "per scene unit",
+              .range = kNotNegative},
+        render.distance_attenuation);
+}
+
+template <class Visitor, Is<CameraDescription> T>
+void visit_fields(Visitor& visit, T& camera) {
+  visit(Field{.key = "projection", .text = "Kind of projection"}, camera.projection);
+  visit(Field{.key = "position", .text = "Where the eye is", .unit = "scene units"}, camera.position);
+  visit(Field{.key = "target",
+              .text = "Point that the middle of the picture shows; not the position",
+              .unit = "scene units"},
+        camera.target);
+  visit(Field{.key = "up", .text = "Direction that is up in the picture; not along the line of sight", .nonzero = true},
+        camera.up);
+  visit(Field{.key = "field_of_view",
+              .text = "Perspective: vertical angle of view",
+              .unit = "degrees",
+              .range = {0, 180, true, true}},
+        camera.field_of_view);
+  visit(Field{.key = "height", .text = "Orthographic: height of the window", .unit = "scene units", .range = kPositive},
+        camera.height);
+}
+
+template <class Visitor, Is<ConstantBackground> T>
+void visit_fields(Visitor& visit, T& background) {
+  visit(Field{.key = "color", .text = "Radiance of what lies behind everything", .range = kNotNegative},
+        background.color);
+}
+
+template <class Visitor, Is<GradientBackground> T>
+void visit_fields(Visitor& visit, T& background) {
+  visit(Field{.key = "bottom", .text = "Radiance straight down", .range = kNotNegative}, background.bottom);
+  visit(Field{.key = "horizon", .text = "Radiance at the level of the eye", .range = kNotNegative}, background.horizon);
+  visit(Field{.key = "top", .text = "Radiance straight up", .range = kNotNegative}, background.top);
+}
+
+template <class Visitor, Is<DirectionalLight> T>
+void visit_fields(Visitor& visit, T& light) {
+  visit(Field{.key = "direction", .text = "The way the light travels; any length but zero", .nonzero = true},
+        light.direction);
+}
+
+template <class Visitor, Is<PointLight> T>
+void visit_fields(Visitor& visit, T& light) {
+  visit(Field{.key = "position", .text = "Where the light is", .unit = "scene units"}, light.position);
+}
+
+template <class Visitor, Is<LightDescription> T>
+void visit_fields(Visitor& visit, T& light) {
+  visit.tagged(Field{.key = kTypeKey, .text = "Kind of light", .required = true}, light.kind);
+  visit(Field{.key = "color", .text = "Intensity, without falloff over distance", .range = kNotNegative}, light.color);
+}
+
+template <class Visitor, Is<CheckerPattern> T>
+void visit_fields(Visitor& visit, T& checker) {
+  visit(Field{.key = "even", .text = "Color of the square at `offset` and of every second one", .range = kNotNegative},
+        checker.even);
+  visit(Field{.key = "odd", .text = "Color of the squares between", .range = kNotNegative}, checker.odd);
+  visit(
+      Field{.key = "size", .text = "Edge of a square", .unit = "scene units, for uv texture units", .range = kPositive},
+      checker.size);
+  visit(Field{.key = "plane", .text = "The two coordinates that the squares lie over"}, checker.plane);
+  visit(Field{.key = "offset", .text = "Where a corner of an even square lies", .unit = "as size"}, checker.offset);
+}
+
+template <class Visitor, Is<HighlightDescription> T>
+void visit_fields(Visitor& visit, T& highlight) {
+  visit(Field{.key = "weight", .text = "W of Phong 1973, eq. 4.5, times the light's color", .range = kNotNegative},
+        highlight.weight);
+  visit(Field{.key = "exponent",
+              .text = "n of Phong 1973, eq. 4.5; larger is smaller and sharper",
+              .range = {1, kLargestNumber}},
+        highlight.exponent);
+}
+
+template <class Visitor, Is<MaterialDescription> T>
+void visit_fields(Visitor& visit, T& material) {
+  visit(Field{.key = "diffuse", .text = "k_d of Whitted 1980, eq. 2", .range = kNotNegative}, material.diffuse);
+  visit(Field{.key = "ambient",
+              .text = "Share of the scene's ambient light that is reflected",
+              .range = kNotNegative,
+              .absent = "as diffuse"},
+        material.ambient);
+  visit(Field{.key = "highlight", .text = "Highlight of the lights"}, material.highlight);
+  visit(Field{.key = "reflection", .text = "k_s of Whitted 1980, eq. 2", .range = kNotNegative}, material.reflection);
+  visit(Field{.key = "transmission", .text = "k_t of Whitted 1980, eq. 2", .range = kNotNegative},
+        material.transmission);
+  visit(Field{.key = "index_of_refraction",
+              .text = "Of the inside over the outside; the geometric normal points outside",
+              .range = kPositive},
+        material.index_of_refraction);
+}
+
+template <class Visitor, Is<FaceGroup> T>
+void visit_fields(Visitor& visit, T& group) {
+  visit(Field{.key = "name", .text = "Name of the group"}, group.name);
+  visit(Field{.key = "material", .text = "Material named by the mesh file that the group came from"}, group.material);
+  visit(Field{.key = "first_face", .text = "Index of its first face", .range = {0, 4294967295.0}, .required = true},
+        group.first_face);
+  visit(Field{.key = "face_count", .text = "Number of its faces", .range = {0, 4294967295.0}, .required = true},
+        group.face_count);
+}
+
+template <class Visitor, Is<InlineMesh> T>
+void visit_fields(Visitor& visit, T& mesh) {
+  visit(Field{.key = "origin",
+              .text = "Added to every position, in double precision: positions themselves are single precision",
+              .unit = "scene units",
+              .absent = "chosen so that far from (0, 0, 0) nothing is lost; positions stay what the file says"},
+        mesh.origin);
+  visit(Field{.key = "positions", .text = "Vertices, relative to `origin` where that is given", .unit = "scene units"},
+        mesh.positions);
+  visit(Field{.key = "faces",
+              .text = "Polygons of 3 or more indices into positions, zero-based, counter-clockwise from outside"},
+        mesh.faces);
+  visit(Field{.key = "vertex_normals", .text = "One normal a position, or what normal_faces refer to; any length"},
+        mesh.vertex_normals);
+  visit(Field{.key = "normal_faces",
+              .text = "Indices into vertex_normals, in the shape of faces",
+              .absent = "one normal a position"},
+        mesh.normal_faces);
+  visit(Field{.key = "texture_coordinates", .text = "One pair a position, or what texture_faces refer to"},
+        mesh.texture_coordinates);
+  visit(Field{.key = "texture_faces",
+              .text = "Indices into texture_coordinates, in the shape of faces",
+              .absent = "one pair a position"},
+        mesh.texture_faces);
+  visit(Field{.key = "groups", .text = "Runs of faces under a name, in order, that do not overlap"}, mesh.groups);
+}
+
+template <class Visitor, Is<MeshShape> T>
+void visit_fields(Visitor& visit, T& mesh) {
+  visit(Field{.key = "file",
+              .text = "An .obj or .ply file, relative to the folder of the scene file",
+              .absent = "positions and faces are given here"},
+        mesh.file);
+  visit(Field{.key = "normals", .text = "Where vertex normals come from"}, mesh.normals);
+  visit(Field{.key = "crease_angle",
+              .text = "Faces that meet at a larger angle share no normal",
+              .unit = "degrees",
+              .range = {0, 180}},
+        mesh.crease_angle);
+  visit.inlined(mesh);
+}
+
+template <class Visitor, Is<SphereShape> T>
+void visit_fields(Visitor& visit, T& sphere) {
+  visit(Field{.key = "center", .text = "Center", .unit = "scene units"}, sphere.center);
+  visit(Field{.key = "radius", .text = "Radius", .unit = "scene units", .range = kPositive}, sphere.radius);
+}
+
+template <class Visitor, Is<PlaneShape> T>
+void visit_fields(Visitor& visit, T& plane) {
+  visit(Field{.key = "point", .text = "Any point of the plane", .unit = "scene units"}, plane.point);
+  visit(Field{.key = "normal", .text = "Direction to the outside; any length but zero", .nonzero = true}, plane.normal);
+}
+
+template <class Visitor, Is<DiscShape> T>
+void visit_fields(Visitor& visit, T& disc) {
+  visit(Field{.key = "center", .text = "Center", .unit = "scene units"}, disc.center);
+  visit(Field{.key = "normal", .text = "Direction to the outside; any length but zero", .nonzero = true}, disc.normal);
+  visit(Field{.key = "radius", .text = "Radius", .unit = "scene units", .range = kPositive}, disc.radius);
+}
+
+template <class Visitor, Is<TerrainShape> T>
+void visit_fields(Visitor& visit, T& terrain) {
+  visit(Field{.key = "triangles",
+              .text = "Number of triangles wanted; made is the nearest number that a grid allows",
+              .range = {2, 50'000'000}},
+        terrain.triangles);
+  visit(Field{.key = "size", .text = "Edge of the square", .unit = "scene units", .range = kPositive}, terrain.size);
+  visit(Field{.key = "height",
+              .text = "Between the lowest and the highest point, about",
+              .unit = "scene units",
+              .range = kNotNegative},
+        terrain.height);
+  visit(Field{.key = "roughness", .text = "Ratio of the amplitudes of successive octaves", .range = {0, 1, true, true}},
+        terrain.roughness);
+  visit(Field{.key = "seed", .text = "Another number, another landscape", .range = {0, 4294967295.0}}, terrain.seed);
+}
+
+template <class Visitor, Is<SphereFlakeShape> T>
+void visit_fields(Visitor& visit, T& flake) {
+  visit(Field{.key = "levels", .text = "Generations; the spheres are (9^(levels + 1) - 1) / 8", .range = {0, 7}},
+        flake.levels);
+  visit(Field{.key = "center", .text = "Center of the largest sphere", .unit = "scene units"}, flake.center);
+  visit(Field{.key = "radius", .text = "Radius of the largest sphere", .unit = "scene units", .range = kPositive},
+        flake.radius);
+}
+
+template <class Visitor, Is<ShapeDescription> T>
+void visit_fields(Visitor& visit, T& shape) {
+  visit.tagged(Field{.key = kTypeKey, .text = "Kind of shape", .required = true}, shape.kind);
+  visit(Field{.key = "material", .text = "Name of a material of this file", .absent = "the default material"},
+        shape.material);
+  visit(
+      Field{
+          .key = "transform", .text = "Object to world: a step or a list of steps, applied in order", .absent = "none"},
+      shape.transform);
+}
+
+template <class Visitor, Is<TransformStep> T>
+void visit_fields(Visitor& visit, T& step) {
+  visit(Field{.key = "scale", .text = "Factors along x, y and z, not zero; negative ones mirror", .absent = "1"},
+        step.scale);
+  visit(Field{.key = "rotate",
+              .text = "About the x axis, then y, then z, right-handed",
+              .unit = "degrees",
+              .absent = "none"},
+        step.rotate);
+  visit(Field{.key = "translate", .text = "Displacement", .unit = "scene units", .absent = "none"}, step.translate);
+  visit(Field{.key = "matrix",
+              .text = "The whole step, alone: 16 numbers, the images of the x, y and z axis and of the origin, each "
+                      "followed by its fourth coordinate (0, 0, 0, 1); glTF's order",
+              .absent = "none"},
+        step.matrix);
+}
+
+template <class Visitor, Is<SceneDescription> T>
+void visit_fields(Visitor& visit, T& scene) {
+  std::conditional_t<std::is_const_v<T>, const SceneVersion, SceneVersion> version;
+  visit(Field{.key = "raytree", .text = "Version of the scene format", .required = true}, version);
+  visit(Field{.key = "title", .text = "Free text; goes into the picture's metadata"}, scene.title);
+  visit(Field{.key = "image", .text = "Size of the picture"}, scene.image);
+  visit(Field{.key = "render", .text = "How the picture is traced"}, scene.render);
+  visit(Field{.key = "background", .text = "What rays see that leave the scene"}, scene.background);
+  visit(Field{.key = "ambient", .text = "Ambient light, from everywhere", .range = kNotNegative}, scene.ambient);
+  visit(Field{.key = "cameras", .text = "Cameras by name; the first is the default one"}, scene.cameras);
+  visit(Field{.key = "lights", .text = "Lights by name"}, scene.lights);
+  visit(Field{.key = "materials", .text = "Materials by name"}, scene.materials);
+  visit(Field{.key = "shapes", .text = "Shapes by name"}, scene.shapes);
+}
+
+// --- which members are what ---------------------------------------------------------------------------------
+
+/// A struct with a table.
+template <class T>
+concept Table = Is<T, ImageDescription> || Is<T, RenderSettings> || Is<T, CameraDescription> ||
+    Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, HighlightDescription> || Is<T, MaterialDescription> ||
+    Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
+
+/// An element of a list keyed by name.
+template <class T>
+concept Named = requires(T& t) {
+  t.name;
+}
+&&(Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, MaterialDescription> || Is<T, ShapeDescription>);
+
+/// What a named element is called in messages: "material" of "materials".
+template <Named T>
+constexpr std::string_view noun_of() {
+  if constexpr (Is<T, CameraDescription>) return "camera";
+  if constexpr (Is<T, LightDescription>) return "light";
+  if constexpr (Is<T, MaterialDescription>) return "material";
+  if constexpr (Is<T, ShapeDescription>) return "shape";
+}
+
+template <class E>
+requires std::is_enum_v<E> std::string_view enum_name(E value) {
+  for (const auto& entry : EnumTable<E>::entries)
+    if (entry.value == value) return entry.name;
+  return {};
+}
+
+/// "none" or "grid:N".
+inline std::string antialiasing_text(const Antialiasing& antialias) {
+  return antialias.method == Antialiasing::Method::none ? "none" : "grid:" + std::to_string(antialias.grid_size);
+}
+
+/// Calls visit(std::in_place_type<T>) for each alternative T of a variant.
+template <class Variant, class Visit>
+void for_each_alternative(Visit&& visit) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (visit(std::in_place_type<std::variant_alternative_t<I, Variant>>), ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<Variant>>());
+}
+
+}  // namespace raytree

@@ -1,0 +1,219 @@
+// What is cut is bounded: on random scenes, per sample and channel, 0 <= uncut - cut <= truncation channel <= cutoff.
+// And the table that the promise rests on.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "tests/renderer/test_scenes.h"
+
+namespace raytree {
+namespace {
+
+using namespace test;
+
+class RandomScenes {
+ public:
+  explicit RandomScenes(std::uint64_t seed) : random_(seed) {}
+
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
+  bool chance(double share) { return uniform(0, 1) < share; }
+  Rgb color(double most) {
+    const auto channel = [&] { return static_cast<float>(uniform(0, most)); };
+    return {channel(), channel(), channel()};
+  }
+  Vec3d point(double reach) { return {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)}; }
+
+  SceneDescription next() {
+    CameraDescription camera;
+    camera.position = {uniform(-1, 1), uniform(-1, 1), 8};
+    camera.field_of_view = 45;
+    SceneDescription scene = dark_scene(12, camera);
+    scene.render.depth = integer(1, 8);
+    scene.render.cutoff = std::exp(uniform(std::log(1e-4), std::log(0.5)));
+    scene.render.fresnel = chance(0.3);
+    scene.render.highlights = chance(0.5) ? HighlightForm::reflected : HighlightForm::halfway;
+    scene.render.shadowed_highlights = chance(0.5);
+    if (chance(0.3)) scene.render.distance_attenuation = uniform(0, 0.3);
+    scene.ambient = color(0.4);
+    if (chance(0.5))
+      scene.background = GradientBackground{color(1.5), color(1.5), color(1.5)};
+    else
+      scene.background = ConstantBackground{color(1)};
+
+    const int materials = integer(2, 5);
+    for (int i = 0; i < materials; ++i) {
+      MaterialDescription m = material("m" + std::to_string(i), color(1));
+      if (chance(0.3)) {
+        CheckerPattern checker;
+        checker.even = color(1), checker.odd = color(1);
+        checker.size = uniform(0.2, 2);
+        checker.plane = static_cast<CheckerPattern::Plane>(integer(0, 2));
+        m.diffuse = checker;
+      }
+      if (chance(0.3)) m.ambient = color(1);
+      if (chance(0.6)) m.highlight = {color(0.8), uniform(1, 80)};
+      if (chance(0.8)) m.reflection = color(chance(0.2) ? 1.2 : 0.6);
+      if (chance(0.6)) m.transmission = color(chance(0.2) ? 1.2 : 0.6);
+      m.index_of_refraction = uniform(0.7, 2.2);
+      if (chance(0.3)) m.fresnel = chance(0.7);
+      scene.materials.push_back(m);
+    }
+    const auto any_material = [&] { return "m" + std::to_string(integer(0, materials - 1)); };
+    const int shapes = integer(2, 9);
+    for (int i = 0; i < shapes; ++i) {
+      const int kind = integer(0, 3);
+      if (kind == 0) scene.shapes.push_back(shape(SphereShape{point(3), uniform(0.3, 2)}, any_material()));
+      if (kind == 1) scene.shapes.push_back(shape(DiscShape{point(3), point(1) + Vec3d(0, 0, 2), uniform(0.5, 3)}, any_material()));
+      if (kind == 2) scene.shapes.push_back(shape(PlaneShape{point(3) - Vec3d(0, 0, 3), point(1) + Vec3d(0, 2, 0)}, any_material()));
+      if (kind == 3) {
+        std::vector<Vec3f> corners;
+        for (int c = 0; c < 12; ++c) corners.emplace_back(point(3));
+        scene.shapes.push_back(mesh_shape(triangles(corners, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}), any_material(),
+                                          NormalSource::flat));
+      }
+    }
+    const int lights = integer(0, 3);
+    for (int i = 0; i < lights; ++i)
+      scene.lights.push_back(chance(0.5) ? directional_light(point(1) + Vec3d(0, -1.5, 0), color(1.5))
+                                         : point_light(point(6), color(1.5)));
+    return scene;
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+/// Meshes are consumed by prepare(): a scene that is rendered twice is copied with meshes of its own.
+SceneDescription deep_copy(const SceneDescription& scene) {
+  SceneDescription copy = scene;
+  for (ShapeDescription& s : copy.shapes)
+    if (auto* mesh = std::get_if<MeshShape>(&s.kind)) mesh->mesh = std::make_shared<PolygonMesh>(*mesh->mesh);
+  return copy;
+}
+
+TEST(Cutoff, IsKeptPerSampleAndChannelOnRandomScenes) {
+  RandomScenes scenes(20240607);
+  std::uint64_t cut_branches = 0, cut_samples = 0, scenes_cut = 0;
+  const ChannelSet channels{ChannelGroup::color, ChannelGroup::truncation, ChannelGroup::ray_count};
+  for (int i = 0; i < 300; ++i) {
+    const SceneDescription scene = scenes.next();
+    const RenderResult cut = rendered(deep_copy(scene), channels);
+    SceneDescription whole = deep_copy(scene);
+    whole.render.cutoff = 0;
+    const RenderResult uncut = rendered(std::move(whole), channels);
+    cut_branches += cut.statistics.branches_cut;
+    scenes_cut += cut.statistics.branches_cut > 0;
+    for (int y = 0; y < 12; ++y)
+      for (int x = 0; x < 12; ++x) {
+        const Rgb a = color_at(uncut.film, x, y), b = color_at(cut.film, x, y),
+                  t = color_at(cut.film, x, y, ChannelGroup::truncation);
+        const double rays = uncut.film.id_plane(ChannelGroup::ray_count)[pixel_index(uncut.film, x, y)];
+        const float values[3][3] = {{a.r, b.r, t.r}, {a.g, b.g, t.g}, {a.b, b.b, t.b}};
+        bool any = false;
+        for (const auto& [all, kept, bound] : values) {
+          // Both sums add the same terms, save those cut, in float: each addition rounds the sum by half an ulp, and
+          // a ray makes at most two (its ambient share and its light or background).
+          const double tolerance = (2 * rays + 4) * 0x1p-24 * std::max(all, kept);
+          const double lost = double(all) - kept;
+          ASSERT_GE(lost, -tolerance) << "scene " << i << " pixel " << x << "," << y;
+          ASSERT_LE(lost, bound + tolerance) << "scene " << i << " pixel " << x << "," << y;
+          // The truncation channel is such a sum itself; shares are differences that round too.
+          ASSERT_LE(bound, scene.render.cutoff * (1 + (2 * rays + 4) * 0x1p-24)) << "scene " << i;
+          any |= bound > 0;
+        }
+        cut_samples += any;
+      }
+  }
+  // The test tests something: over a hundred scenes lose branches to the cutoff.
+  EXPECT_GT(scenes_cut, 100u);
+  EXPECT_GT(cut_branches, 10000u);
+  EXPECT_GT(cut_samples, 3000u);
+  RecordProperty("scenes_cut", static_cast<int>(scenes_cut));
+  RecordProperty("branches_cut", static_cast<int>(cut_branches));
+  RecordProperty("samples_cut", static_cast<int>(cut_samples));
+}
+
+TEST(Cutoff, OfZeroCutsOnlyWhatCanBringNoLight) {
+  RandomScenes scenes(5);
+  for (int i = 0; i < 20; ++i) {
+    SceneDescription scene = scenes.next();
+    scene.render.cutoff = 0;
+    const RenderResult result = rendered(std::move(scene));
+    for (int p = 0; p < 3; ++p)
+      for (int k = 0; k < 144; ++k) EXPECT_EQ(result.film.plane(ChannelGroup::truncation, p)[k], 0);
+  }
+}
+
+TEST(Cutoff, OnFacingMirrorsTakesNoMoreThanTheRestOfTheSeries) {
+  // I = E (1 + k + k^2 + ...): the exact remainder after level d is E k^d / (1 - k), of which the tree may lose epsilon.
+  const float k = 0.8f, e = 0.5f;
+  SceneDescription scene = dark_scene(2, front_camera(1, 0.5));
+  scene.ambient = Rgb(1);
+  scene.materials = {material("m", Rgb(e))};
+  scene.materials[0].reflection = Rgb(k);
+  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "m"), shape(PlaneShape{{0, 0, 1}, {0, 0, -1}}, "m")};
+  scene.render.depth = 200;
+  for (const double epsilon : {1e-1, 1e-2, 1e-3, 1e-4}) {
+    scene.render.cutoff = epsilon;
+    const RenderResult result = rendered(scene);
+    const double lost = e / (1 - double(k)) - color_at(result.film, 0, 0).r;
+    EXPECT_GE(lost, -1e-5);
+    EXPECT_LE(lost, epsilon + 1e-5);
+    // The bound is tight here, so the tree is cut at the first level whose remainder fits: no ray is wasted.
+    const int levels = static_cast<int>(std::ceil(std::log(epsilon * (1 - double(k)) / e) / std::log(double(k))));
+    EXPECT_NEAR(result.statistics.deepest_level, levels, 1) << epsilon;
+  }
+}
+
+TEST(RadianceBound, FollowsItsRecurrence) {
+  Material dull, mirror;
+  dull.diffuse.even = dull.diffuse.odd = Rgb(0.5f, 0.25f, 0);
+  dull.ambient = dull.diffuse;
+  dull.highlight = Rgb(0.25f);
+  mirror.reflection = Rgb(0.5f, 1, 0);
+  mirror.transmission = Rgb(0.25f, 0.5f, 0);
+  const std::vector<Material> materials{dull, mirror};
+  Light light;
+  light.color = Rgb(2, 1, 1);
+  const std::vector<Light> lights{light, light};
+  const BackgroundLight background(ConstantBackground{Rgb(0.125f, 0.125f, 0.125f)});
+  const RadianceBound bound(materials, lights, background, Rgb(1), 4);
+  EXPECT_EQ(bound(-1), Rgb(0));
+  EXPECT_EQ(bound(-7), Rgb(0));
+  // E = 1 x .5 + 4 x (.5 + .25) = 3.5; .25 + 2 x (.25 + .25) = 1.25... per channel; rho = .75, 1.5, 0.
+  const Rgb e(0.5f + 4 * 0.75f, 0.25f + 2 * 0.5f, 2 * 0.25f);
+  Rgb expected = e;
+  for (int k = 0; k < 4; ++k) {
+    const Rgb b = bound(k);
+    expect_color(b, expected, 1e-4 * (k + 1), "level " + std::to_string(k));
+    EXPECT_GE(b.r, expected.r);
+    expected = max(e, Rgb(0.75f, 1.5f, 0) * expected);
+  }
+}
+
+TEST(RadianceBound, IsALargeNumberWhereThereIsNone) {
+  Material lamp, mirror;
+  lamp.diffuse.even = lamp.diffuse.odd = lamp.ambient.even = lamp.ambient.odd = Rgb(1);
+  mirror.reflection = Rgb(2, 0.5f, 1);
+  const RadianceBound bound(std::vector<Material>{lamp, mirror}, {}, BackgroundLight(), Rgb(1), 5000);
+  for (const int level : {200, 1023, 1024, 4999}) {
+    EXPECT_EQ(bound(level).r, std::numeric_limits<float>::max()) << level;
+    EXPECT_NEAR(bound(level).g, 1, 1e-3);
+    EXPECT_GE(bound(level).b, 1);
+  }
+}
+
+TEST(RadianceBound, WithFresnelTakesTheLargerOfTheTwoCoefficients) {
+  Material lamp, glass;
+  lamp.ambient.even = lamp.ambient.odd = Rgb(1);
+  glass.reflection = Rgb(0.75f);
+  glass.transmission = Rgb(0.5f);
+  glass.fresnel = true;
+  const RadianceBound bound(std::vector<Material>{lamp, glass}, {}, BackgroundLight(), Rgb(1), 5);
+  EXPECT_NEAR(bound(4).r, 1, 1e-3);
+}
+
+}  // namespace
+}  // namespace raytree

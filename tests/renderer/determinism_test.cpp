@@ -1,0 +1,165 @@
+// Bit-identical pictures: for any number of threads, any order of tiles, any crop; also where rays are aimed exactly
+// at vertices, where packets are known to differ from single rays.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <random>
+
+#include "tests/renderer/test_scenes.h"
+
+namespace raytree {
+namespace {
+
+using namespace test;
+
+/// Every feature at once: mirrors, glass, both lights, checker, gradient, smooth mesh, planes, discs, spheres.
+SceneDescription busy_scene() {
+  CameraDescription camera;
+  camera.position = {1, 2, 7};
+  camera.target = {0, 0.5, 0};
+  SceneDescription scene = dark_scene(150, camera);
+  scene.image = {150, 110};  // no multiple of the tile
+  scene.render.cutoff = 1e-3;
+  scene.render.fresnel = true;
+  scene.ambient = Rgb(0.2f);
+  scene.background = GradientBackground{};
+  CheckerPattern checker;
+  checker.size = 0.5;
+  scene.materials = {material("floor", checker), material("glass", Rgb(0.02f)), material("mirror", Rgb(0.1f)),
+                     material("dull", Rgb(0.7f, 0.4f, 0.2f))};
+  scene.materials[0].reflection = Rgb(0.2f);
+  scene.materials[1].reflection = scene.materials[1].transmission = Rgb(1);
+  scene.materials[2].reflection = Rgb(0.8f);
+  scene.materials[2].highlight = {Rgb(0.5f), 50};
+  scene.materials[3].highlight = {Rgb(0.5f), 20};
+  scene.lights = {directional_light({-1, -2, -1}), point_light({3, 4, 5}, Rgb(0.5f))};
+  scene.shapes = {shape(PlaneShape{{0, -1, 0}, {0, 1, 0}}, "floor"), shape(SphereShape{{-1.2, 0, 0}, 1}, "glass"),
+                  shape(SphereShape{{1.2, 0, -1}, 1}, "mirror"), shape(DiscShape{{0, 1.5, -2}, {0.2, -0.3, 1}, 1}, "mirror"),
+                  mesh_shape(globe_mesh(0.8, 24, 12), "dull", NormalSource::smooth),
+                  mesh_shape(box_mesh({1.5f, -1, 0.8f}, {2.2f, 0, 1.6f}), "glass")};
+  scene.shapes[4].transform = translation({0.2, 0.5, 1.5});
+  return scene;
+}
+
+/// An orthographic camera whose pixel centers (and, with grid 2, every second sample's neighbors) fall exactly on the
+/// vertices of a bumpy grid mesh of glass over a mirror.
+SceneDescription vertex_scene(int grid) {
+  const int size = 96;
+  // Samples lie at multiples of 1 / grid off half a sample; the camera is shifted by that half.
+  const double half = 0.5 / grid;
+  CameraDescription camera = front_camera(size);
+  camera.position = {-half, half, 100};
+  camera.target = {-half, half, 0};
+  SceneDescription scene = dark_scene(size, camera);
+  scene.render.antialias = {Antialiasing::Method::grid, grid};
+  scene.render.depth = 5;
+  scene.background = GradientBackground{};
+  scene.ambient = Rgb(0.1f);
+  scene.materials = {material("m", Rgb(0.5f)), material("floor", Rgb(0.1f))};
+  scene.materials[0].reflection = scene.materials[0].transmission = Rgb(0.4f);
+  scene.materials[1].reflection = Rgb(0.8f);
+  scene.lights = {directional_light({-1, -2, -3}), point_light({0, 10, 30})};
+  scene.shapes = {mesh_shape(grid_mesh(80 * grid, 1.0 / grid, [](int i, int j) { return 0.25 * ((i * 7 + j * 13) % 5); }), "m",
+                             grid == 1 ? NormalSource::flat : NormalSource::smooth),
+                  shape(PlaneShape{{0, 0, -4}, {0, 0, 1}}, "floor")};
+  return scene;
+}
+
+void expect_the_same_picture_always(SceneDescription description, const std::string& what) {
+  const tbb::global_control more_threads(tbb::global_control::max_allowed_parallelism, 7);
+  const Scene scene = prepared(std::move(description));
+  RenderOptions options;
+  options.channels = all_channels();
+  options.threads = 1;
+  const RenderResult reference = render(scene, options);
+  ASSERT_TRUE(reference.complete);
+  for (const int threads : {1, 2, 3, 7})
+    for (const std::uint64_t seed : {0, 99}) {
+      options.threads = threads;
+      options.tile_order_seed = seed;
+      const RenderResult result = render(scene, options);
+      EXPECT_EQ(differing_pixels(reference.film, result.film), 0u) << what << " threads " << threads << " seed " << seed;
+      EXPECT_EQ(result.statistics.rays, reference.statistics.rays);
+      EXPECT_EQ(result.statistics.branches_cut, reference.statistics.branches_cut);
+      EXPECT_EQ(result.statistics.threads, threads);
+    }
+  const int w = scene.description.image.width, h = scene.description.image.height;
+  for (const PixelWindow& window :
+       {PixelWindow{0, 0, 1, 1}, PixelWindow{33, 17, 30, 30}, PixelWindow{31, 31, 2, 2}, PixelWindow{w - 1, h - 1, 1, 1},
+        PixelWindow{5, h - 4, w - 5, 3}, PixelWindow{32, 0, 32, 32}}) {
+    options.window = window;
+    options.threads = 3;
+    options.tile_order_seed = 7;
+    const RenderResult crop = render(scene, options);
+    EXPECT_EQ(differing_pixels(reference.film, crop.film), 0u)
+        << what << " crop " << window.width << "x" << window.height << "+" << window.x0 << "+" << window.y0;
+    EXPECT_EQ(crop.film.window().width, window.width);
+  }
+}
+
+TEST(Determinism, PicturesOfEveryFeatureAreBitIdentical) {
+  expect_the_same_picture_always(busy_scene(), "busy");
+  SceneDescription scene = busy_scene();
+  scene.render.antialias = {Antialiasing::Method::grid, 3};
+  scene.image = {70, 50};
+  scene.cameras[0].field_of_view = 55;
+  expect_the_same_picture_always(std::move(scene), "busy, grid:3");
+}
+
+TEST(Determinism, PicturesOfRaysAimedAtVerticesAreBitIdentical) {
+  expect_the_same_picture_always(vertex_scene(1), "vertices");
+  expect_the_same_picture_always(vertex_scene(2), "vertices, grid:2");
+}
+
+TEST(Determinism, TheRaysAimedAtVerticesDoMeetThem) {
+  // What the test above rests on: the hits' positions are vertices, to the last bit of x and y.
+  const RenderResult result = rendered(vertex_scene(1));
+  const Film& film = result.film;
+  int at_vertices = 0, hits = 0;
+  for (int y = 8; y < 88; ++y)
+    for (int x = 8; x < 88; ++x) {
+      const double vx = x - 48, vy = 48 - y;  // the pixel's center in the world
+      const int i = static_cast<int>(vx) + 40, j = static_cast<int>(vy) + 40;
+      const float depth = film.plane(ChannelGroup::depth, 0)[pixel_index(film, x, y)];
+      if (film.id_plane(ChannelGroup::object_id)[pixel_index(film, x, y)] != 1) continue;
+      ++hits;
+      at_vertices += std::abs(100 - depth - 0.25 * ((i * 7 + j * 13) % 5)) < 1e-4;
+    }
+  EXPECT_EQ(at_vertices, hits);
+  // Embree's robust mode is tight along edges, not at vertices (catalogue of failures: up to 2.3 % pass between).
+  EXPECT_GE(hits, 0.9 * 80 * 80);
+}
+
+TEST(Determinism, PreparingWithOtherThreadCountsGivesTheSamePicture) {
+  const tbb::global_control more_threads(tbb::global_control::max_allowed_parallelism, 7);
+  RenderOptions options;
+  options.channels = all_channels();
+  std::optional<RenderResult> reference;
+  for (const int threads : {1, 2, 3, 7}) {
+    SceneDescription description = busy_scene();
+    description.shapes.push_back(mesh_shape(globe_mesh(3, 120, 60), "dull", NormalSource::smooth));
+    description.shapes.back().transform = translation({0, 2, -6});
+    PrepareOptions preparing;
+    preparing.threads = threads;
+    tbb::task_arena arena(threads);
+    Scene scene = arena.execute([&] { return prepared(std::move(description), nullptr, preparing); });
+    RenderResult result = render(scene, options);
+    if (!reference)
+      reference.emplace(std::move(result));
+    else
+      EXPECT_EQ(differing_pixels(reference->film, result.film), 0u) << threads;
+  }
+}
+
+TEST(Determinism, ChannelsThatAreNotAskedForChangeNothing) {
+  const Scene scene = prepared(busy_scene());
+  RenderOptions options;
+  const RenderResult color = render(scene, options);
+  options.channels = all_channels();
+  const RenderResult all = render(scene, options);
+  EXPECT_EQ(differing_pixels(all.film, color.film), 0u);
+}
+
+}  // namespace
+}  // namespace raytree

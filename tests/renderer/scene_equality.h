@@ -1,0 +1,126 @@
+// Equality of scene descriptions, member by member. Structured bindings name every member, so that a member added
+// to a struct does not compile here until it is compared; its count is held against the tables in the tests.
+#pragma once
+
+#include "renderer/scene_fields.h"
+
+namespace raytree::test {
+
+inline bool equal(const auto& a, const auto& b) { return a == b; }
+
+inline bool equal(const Antialiasing& a, const Antialiasing& b) {
+  const auto& [method, size] = a;
+  return method == b.method && size == b.grid_size;
+}
+inline bool equal(const ImageDescription& a, const ImageDescription& b) {
+  const auto& [width, height] = a;
+  return width == b.width && height == b.height;
+}
+inline bool equal(const CameraDescription& a, const CameraDescription& b) {
+  const auto& [name, projection, position, target, up, angle, height] = a;
+  return name == b.name && projection == b.projection && position == b.position && target == b.target && up == b.up &&
+         angle == b.field_of_view && height == b.height;
+}
+inline bool equal(const RenderSettings& a, const RenderSettings& b) {
+  const auto& [depth, cutoff, antialias, highlights, shadows, shadowed, fresnel, attenuation] = a;
+  return depth == b.depth && cutoff == b.cutoff && equal(antialias, b.antialias) && highlights == b.highlights &&
+         shadows == b.shadows && shadowed == b.shadowed_highlights && fresnel == b.fresnel &&
+         attenuation == b.distance_attenuation;
+}
+inline bool equal(const ConstantBackground& a, const ConstantBackground& b) {
+  const auto& [color] = a;
+  return color == b.color;
+}
+inline bool equal(const GradientBackground& a, const GradientBackground& b) {
+  const auto& [bottom, horizon, top] = a;
+  return bottom == b.bottom && horizon == b.horizon && top == b.top;
+}
+inline bool equal(const DirectionalLight& a, const DirectionalLight& b) {
+  const auto& [direction] = a;
+  return direction == b.direction;
+}
+inline bool equal(const PointLight& a, const PointLight& b) {
+  const auto& [position] = a;
+  return position == b.position;
+}
+inline bool equal(const CheckerPattern& a, const CheckerPattern& b) {
+  const auto& [even, odd, size, plane, offset] = a;
+  return even == b.even && odd == b.odd && size == b.size && plane == b.plane && offset == b.offset;
+}
+inline bool equal(const HighlightDescription& a, const HighlightDescription& b) {
+  const auto& [weight, exponent] = a;
+  return weight == b.weight && exponent == b.exponent;
+}
+inline bool equal(const FaceGroup& a, const FaceGroup& b) {
+  const auto& [name, material, first, count] = a;
+  return name == b.name && material == b.material && first == b.first_face && count == b.face_count;
+}
+inline bool equal(const std::vector<FaceGroup>& a, const std::vector<FaceGroup>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return equal(x, y); });
+}
+inline bool equal(const PolygonMesh& a, const PolygonMesh& b) {
+  const auto& [origin, positions, sizes, corners, normals, normal_corners, uv, uv_corners, groups] = a;
+  return origin == b.origin && positions == b.positions && sizes == b.face_sizes && corners == b.corners &&
+         normals == b.normals && normal_corners == b.normal_corners && uv == b.texture_coordinates &&
+         uv_corners == b.texture_corners && equal(groups, b.groups);
+}
+inline bool equal(const MeshShape& a, const MeshShape& b) {
+  const auto& [file, normals, angle, mesh] = a;
+  return file == b.file && normals == b.normals && angle == b.crease_angle && !mesh == !b.mesh &&
+         (!mesh || equal(*mesh, *b.mesh));
+}
+inline bool equal(const SphereShape& a, const SphereShape& b) {
+  const auto& [center, radius] = a;
+  return center == b.center && radius == b.radius;
+}
+inline bool equal(const PlaneShape& a, const PlaneShape& b) {
+  const auto& [point, normal] = a;
+  return point == b.point && normal == b.normal;
+}
+inline bool equal(const DiscShape& a, const DiscShape& b) {
+  const auto& [center, normal, radius] = a;
+  return center == b.center && normal == b.normal && radius == b.radius;
+}
+inline bool equal(const TerrainShape& a, const TerrainShape& b) {
+  const auto& [triangles, size, height, roughness, seed] = a;
+  return triangles == b.triangles && size == b.size && height == b.height && roughness == b.roughness && seed == b.seed;
+}
+inline bool equal(const SphereFlakeShape& a, const SphereFlakeShape& b) {
+  const auto& [levels, center, radius] = a;
+  return levels == b.levels && center == b.center && radius == b.radius;
+}
+template <class... T>
+bool equal(const std::variant<T...>& a, const std::variant<T...>& b) {
+  return a.index() == b.index() && std::visit([&]<class V>(const V& value) { return equal(value, std::get<V>(b)); }, a);
+}
+inline bool equal(const LightDescription& a, const LightDescription& b) {
+  const auto& [name, color, kind] = a;
+  return name == b.name && color == b.color && equal(kind, b.kind);
+}
+inline bool equal(const MaterialDescription& a, const MaterialDescription& b) {
+  const auto& [name, diffuse, ambient, highlight, reflection, transmission, index] = a;
+  return name == b.name && equal(diffuse, b.diffuse) && ambient.has_value() == b.ambient.has_value() &&
+         (!ambient || equal(*ambient, *b.ambient)) && equal(highlight, b.highlight) && reflection == b.reflection &&
+         transmission == b.transmission && index == b.index_of_refraction;
+}
+/// All but where it stood in its file.
+inline bool equal(const ShapeDescription& a, const ShapeDescription& b) {
+  const auto& [name, material, transform, kind, where] = a;
+  (void)where;
+  return name == b.name && material == b.material && transform == b.transform && equal(kind, b.kind);
+}
+template <Named T>
+bool equal(const std::vector<T>& a, const std::vector<T>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const T& x, const T& y) { return equal(x, y); });
+}
+/// All but name and folder, which a file does not hold.
+inline bool equal(const SceneDescription& a, const SceneDescription& b) {
+  const auto& [name, folder, title, image, render, background, ambient, cameras, lights, materials, shapes] = a;
+  (void)name;
+  (void)folder;
+  return title == b.title && equal(image, b.image) && equal(render, b.render) && equal(background, b.background) &&
+         ambient == b.ambient && equal(cameras, b.cameras) && equal(lights, b.lights) &&
+         equal(materials, b.materials) && equal(shapes, b.shapes);
+}
+
+}  // namespace raytree::test

@@ -1,0 +1,372 @@
+// The schema and the reader are printed and driven by the same tables; here they are held against each other all the
+// same, by a validator of the schema's own vocabulary and many documents, right and wrong.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "renderer/builtin_scenes.h"
+#include "renderer/scene_reader.h"
+
+namespace raytree {
+namespace {
+
+using Json = nlohmann::json;
+
+const Json& schema() {
+  static const Json parsed = Json::parse(scene_schema());
+  return parsed;
+}
+
+bool matches(const std::string& text, const std::string& pattern) {
+  static std::map<std::string, std::regex> compiled;  // making one takes longer than the rest of a validation
+  return std::regex_search(text, compiled.try_emplace(pattern, pattern).first->second);
+}
+
+/// JSON Schema draft 2020-12, as much of it as ours uses; an unknown keyword fails the test.
+bool is_valid(const Json& rule, const Json& value) {
+  if (rule.is_boolean()) return rule.get<bool>();
+  if (rule.contains("if") && is_valid(rule["if"], value) && !is_valid(rule["then"], value)) return false;
+  for (const auto& [keyword, argument] : rule.items()) {
+    if (keyword == "$ref") {
+      const std::string pointer = argument.get<std::string>().substr(1);
+      if (!is_valid(schema().at(Json::json_pointer(pointer)), value)) return false;
+    } else if (keyword == "type") {
+      const std::string type = argument;
+      const bool fits = type == "object"    ? value.is_object()
+                        : type == "array"   ? value.is_array()
+                        : type == "string"  ? value.is_string()
+                        : type == "boolean" ? value.is_boolean()
+                        : type == "number"  ? value.is_number()
+                                            : value.is_number() && value == std::floor(value.get<double>());
+      if (!fits) return false;
+    } else if (keyword == "const") {
+      if (value != argument) return false;
+    } else if (keyword == "not") {
+      if (is_valid(argument, value)) return false;
+    } else if (keyword == "oneOf") {
+      int fitting = 0;
+      for (const Json& choice : argument) fitting += is_valid(choice, value) ? 1 : 0;
+      if (fitting != 1) return false;
+    } else if (keyword == "minimum") {
+      if (value.is_number() && value.get<double>() < argument.get<double>()) return false;
+    } else if (keyword == "maximum") {
+      if (value.is_number() && value.get<double>() > argument.get<double>()) return false;
+    } else if (keyword == "exclusiveMinimum") {
+      if (value.is_number() && value.get<double>() <= argument.get<double>()) return false;
+    } else if (keyword == "exclusiveMaximum") {
+      if (value.is_number() && value.get<double>() >= argument.get<double>()) return false;
+    } else if (keyword == "items") {
+      if (value.is_array())
+        for (const Json& element : value)
+          if (!is_valid(argument, element)) return false;
+    } else if (keyword == "minItems") {
+      if (value.is_array() && value.size() < argument.get<std::size_t>()) return false;
+    } else if (keyword == "maxItems") {
+      if (value.is_array() && value.size() > argument.get<std::size_t>()) return false;
+    } else if (keyword == "minLength") {
+      if (value.is_string() && value.get<std::string>().size() < argument.get<std::size_t>()) return false;
+    } else if (keyword == "maxProperties") {
+      if (value.is_object() && value.size() > argument.get<std::size_t>()) return false;
+    } else if (keyword == "pattern") {
+      if (value.is_string() && !matches(value.get_ref<const std::string&>(), argument.get<std::string>())) return false;
+    } else if (keyword == "required") {
+      if (value.is_object())
+        for (const Json& key : argument)
+          if (!value.contains(key.get<std::string>())) return false;
+    } else if (keyword == "propertyNames") {
+      if (value.is_object())
+        for (const auto& [key, unused] : value.items())
+          if (!is_valid(argument, key)) return false;
+    } else if (keyword == "properties") {
+      if (value.is_object())
+        for (const auto& [key, member] : value.items())
+          if (argument.contains(key) && !is_valid(argument[key], member)) return false;
+    } else if (keyword == "additionalProperties") {
+      if (value.is_object())
+        for (const auto& [key, member] : value.items())
+          if (!(rule.contains("properties") && rule["properties"].contains(key)) && !is_valid(argument, member))
+            return false;
+    } else {
+      static const std::set<std::string> kSaysNothing{"$schema", "$defs", "title", "description",
+                                                      "default", "if",    "then"};
+      EXPECT_TRUE(kSaysNothing.contains(keyword)) << keyword;
+    }
+  }
+  return true;
+}
+
+std::string reader_refusal(const Json& document) {
+  try {
+    read_scene(document.dump(), "s.json", "");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A scene that uses every table: each object of the format stands in it at least once.
+Json rich_document() {
+  return Json::parse(R"({
+    "raytree": 1, "title": "t", "image": {"width": 10, "height": 10},
+    "render": {"depth": 3, "cutoff": 0, "antialias": "grid:2", "highlights": "halfway", "shadows": true,
+               "shadowed_highlights": true, "fresnel": false, "distance_attenuation": 0},
+    "background": {"type": "gradient", "bottom": 0, "horizon": [0, 0, 1], "top": 1}, "ambient": 0.1,
+    "cameras": {"main": {"projection": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "up": [0, 1, 0],
+                         "field_of_view": 40, "height": 2}},
+    "lights": {"a": {"type": "directional", "direction": [0, -1, 0], "color": 1},
+               "b": {"type": "point", "position": [0, 1, 0], "color": [1, 1, 1]}},
+    "materials": {"m": {"diffuse": {"type": "checker", "even": 1, "odd": 0, "size": 1, "plane": "uv", "offset": [0, 0]},
+                        "ambient": 1, "highlight": {"weight": 1, "exponent": 2}, "reflection": 0, "transmission": 0,
+                        "index_of_refraction": 1.5}},
+    "shapes": {
+      "a": {"type": "mesh", "file": "a.ply", "normals": "flat", "crease_angle": 30, "material": "m"},
+      "b": {"type": "mesh", "origin": [0, 0, 0], "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "faces": [[0, 1, 2]],
+            "vertex_normals": [[0, 0, 1]], "normal_faces": [[0, 0, 0]], "texture_coordinates": [[0, 0]],
+            "texture_faces": [[0, 0, 0]], "groups": [{"name": "g", "material": "x", "first_face": 0, "face_count": 1}]},
+      "c": {"type": "sphere", "center": [0, 0, 0], "radius": 1, "transform": {"translate": [0, 1, 0], "rotate": [0, 10, 0], "scale": 2}},
+      "d": {"type": "plane", "point": [0, 0, 0], "normal": [0, 1, 0], "transform": [{"scale": [1, 2, 3]}]},
+      "e": {"type": "disc", "center": [0, 0, 0], "normal": [0, 1, 0], "radius": 1,
+            "transform": {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}},
+      "f": {"type": "terrain", "triangles": 100, "size": 1, "height": 1, "roughness": 0.5, "seed": 1},
+      "g": {"type": "sphere_flake", "levels": 1, "center": [0, 0, 0], "radius": 1}}})");
+}
+
+/// Where messages of the reader speak of what a schema cannot say.
+bool beyond_a_schema(const std::string& message) {
+  for (const char* text : {"unknown material", "too many", "same point", "line of sight", "not invertible", "index ",
+                           "not in the shape", " positions; give", "not affine", "overlap the group"})
+    if (message.find(text) != message.npos) return true;
+  return false;
+}
+
+/// Calls visit(pointer) for every value within.
+void for_each_place(const Json& value, const Json::json_pointer& place,
+                    const std::function<void(const Json::json_pointer&)>& visit) {
+  visit(place);
+  if (value.is_object())
+    for (const auto& [key, member] : value.items()) for_each_place(member, place / key, visit);
+  if (value.is_array())
+    for (std::size_t i = 0; i < value.size(); ++i) for_each_place(value[i], place / i, visit);
+}
+
+int compared = 0;
+void expect_agreement(const Json& document) {
+  const std::string refusal = reader_refusal(document);
+  const bool valid = is_valid(schema(), document);
+  ++compared;
+  if (refusal.empty()) {
+    EXPECT_TRUE(valid) << "the reader accepts, the schema does not: " << document.dump();
+  } else if (!beyond_a_schema(refusal)) {
+    EXPECT_FALSE(valid) << "the schema accepts, the reader does not: " << refusal << "\n" << document.dump();
+  }
+}
+
+TEST(SceneSchema, AcceptsWhatIsRight) {
+  EXPECT_EQ(schema()["$schema"], "https://json-schema.org/draft/2020-12/schema");
+  EXPECT_EQ(reader_refusal(rich_document()), "");
+  EXPECT_TRUE(is_valid(schema(), rich_document()));
+  EXPECT_TRUE(is_valid(schema(), Json::parse(R"({"raytree": 1})")));
+  for (const EmbeddedScene& scene : embedded_scenes()) {
+    EXPECT_TRUE(is_valid(schema(), Json::parse(scene.json))) << scene.name;
+    EXPECT_TRUE(is_valid(schema(), Json::parse(write_scene(builtin_scene(scene.name))))) << scene.name;
+  }
+}
+
+TEST(SceneSchema, AgreesWithTheReaderAboutChangedDocuments) {
+  const Json right = rich_document();
+  const std::vector<Json> values{nullptr,
+                                 true,
+                                 0,
+                                 -1,
+                                 1,
+                                 2.5,
+                                 7,
+                                 8,
+                                 65,
+                                 180,
+                                 181,
+                                 1e18,
+                                 -1e19,
+                                 1e300,
+                                 50000001,
+                                 "",
+                                 "none",
+                                 "m",
+                                 "grid:64",
+                                 "grid:65",
+                                 "xz",
+                                 "point",
+                                 "constant",
+                                 Json::array(),
+                                 Json::array({0, 0, 0}),
+                                 Json::array({1, 1, 1}),
+                                 Json::array({-1, 2, 3}),
+                                 Json::array({0, 1}),
+                                 Json::object(),
+                                 Json::parse(R"({"type": "checker"})"),
+                                 Json::parse(R"({"type": "constant"})")};
+  compared = 0;
+  for_each_place(right, Json::json_pointer(), [&](const Json::json_pointer& place) {
+    // Every value replaced by every other kind of value.
+    for (const Json& value : values) {
+      Json document = right;
+      document[place] = value;
+      expect_agreement(document);
+    }
+    if (place.empty()) return;
+    // Every key and element removed.
+    Json without = right;
+    Json& parent = without[place.parent_pointer()];
+    if (parent.is_object())
+      parent.erase(place.back());
+    else
+      parent.erase(static_cast<std::size_t>(std::stoul(place.back())));
+    expect_agreement(without);
+  });
+  EXPECT_GT(compared, 3000);
+  std::fprintf(stderr, "schema and reader compared on %d documents\n", compared);
+}
+
+TEST(SceneSchema, AnInventedKeyIsRefusedAtEveryLevelByBoth) {
+  const Json right = rich_document();
+  int objects = 0;
+  for_each_place(right, Json::json_pointer(), [&](const Json::json_pointer& place) {
+    if (!right.at(place).is_object()) return;
+    ++objects;
+    Json document = right;
+    document[place]["invented"] = 1;
+    EXPECT_FALSE(is_valid(schema(), document)) << place.to_string();
+    EXPECT_NE(reader_refusal(document), "") << place.to_string();
+  });
+  EXPECT_GT(objects, 20);
+}
+
+/// Calls visit(path, property) for every property that the schema lists, alternatives included.
+void for_each_property(const Json& rule, const std::string& path,
+                       const std::function<void(const std::string&, const Json&)>& visit) {
+  if (rule.contains("properties"))
+    for (const auto& [key, property] : rule["properties"].items()) {
+      if (property.is_boolean() || !property.contains("description")) continue;
+      visit(path + "." + key, property);
+      for_each_property(property, path + "." + key, visit);
+    }
+  for (const char* inside : {"items", "additionalProperties"})
+    if (rule.contains(inside) && rule[inside].is_object()) for_each_property(rule[inside], path + ".*", visit);
+  if (rule.contains("oneOf"))
+    for (const Json& choice : rule["oneOf"])
+      for_each_property(choice, path + (choice.contains("title") ? "<" + choice["title"].get<std::string>() + ">" : ""),
+                        visit);
+}
+
+// Each property's default is what the reader fills in: written out or left out, the scene is the same.
+TEST(SceneSchema, DefaultsAreThoseOfTheReader) {
+  int defaults = 0;
+  const auto check = [&](const Json& properties, const std::function<Json(const Json&)>& document_of) {
+    for (const auto& [key, property] : properties.items()) {
+      if (!property.is_object() || !property.contains("default")) continue;
+      ++defaults;
+      Json given;
+      given[key] = property["default"];
+      EXPECT_TRUE(is_valid(property, property["default"])) << key;
+      EXPECT_EQ(write_scene(read_scene(document_of(given).dump(), "a", "")),
+                write_scene(read_scene(document_of(Json::object()).dump(), "b", "")))
+          << key;
+    }
+  };
+  const Json& top = schema()["properties"];
+  const auto scene_with = [](const std::string& key, const Json& value) {
+    Json document{{"raytree", 1}};
+    document[key] = value;
+    return document;
+  };
+  check(top, [](const Json& given) {
+    Json document{{"raytree", 1}};
+    document.update(given);
+    return document;
+  });
+  for (const char* key : {"image", "render"})
+    check(top[key]["properties"], [&](const Json& given) { return scene_with(key, given); });
+  check(top["cameras"]["additionalProperties"]["properties"], [&](const Json& given) {
+    return scene_with("cameras", {{"x", given}});
+  });
+  check(top["materials"]["additionalProperties"]["properties"], [&](const Json& given) {
+    return scene_with("materials", {{"x", given}});
+  });
+  check(top["materials"]["additionalProperties"]["properties"]["highlight"]["properties"], [&](const Json& given) {
+    return scene_with("materials", {{"x", {{"highlight", given}}}});
+  });
+  const auto check_alternatives = [&](const Json& rule, const std::function<Json(const Json&)>& document_of) {
+    for (const Json& choice : rule["oneOf"])
+      if (choice.contains("title"))
+        check(choice["properties"], [&](Json given) {
+          given["type"] = choice["title"];
+          if (choice["title"] == "mesh") given["file"] = "a.ply";
+          return document_of(given);
+        });
+  };
+  check_alternatives(top["background"], [&](const Json& given) { return scene_with("background", given); });
+  for (const char* key : {"lights", "shapes"})
+    check_alternatives(top[key]["additionalProperties"], [&](const Json& given) {
+      return scene_with(key, {{"x", given}});
+    });
+  check_alternatives(schema()["$defs"]["checker"], [&](const Json& given) {
+    return scene_with("materials", {{"x", {{"diffuse", given}}}});
+  });
+  EXPECT_GT(defaults, 40);
+}
+
+// docs/scene-format.md ends with the tables as the program prints them. RAYTREE_UPDATE_DOCS=1 writes them there.
+TEST(SceneReference, StandsInTheDocumentation) {
+  const std::string path = std::string(RAYTREE_SOURCE_DIR) + "/docs/scene-format.md";
+  const std::string marker =
+      "<!-- From here on printed by scene_reference(); RAYTREE_UPDATE_DOCS=1 renderer_tests writes it. -->\n";
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  std::string document = text.str();
+  const auto begin = document.find(marker);
+  ASSERT_NE(begin, document.npos) << path;
+  if (const char* update = std::getenv("RAYTREE_UPDATE_DOCS"); update != nullptr && *update == '1') {
+    document = document.substr(0, begin) + marker + scene_reference();
+    std::ofstream(path) << document;
+  }
+  EXPECT_EQ(document.substr(begin + marker.size()), scene_reference());
+  // Every key of the schema is named.
+  int keys = 0;
+  const auto named = [&](const std::string& place, const Json&) {
+    ++keys;
+    const std::string key = place.substr(place.rfind('.') + 1);
+    EXPECT_NE(document.find("| `" + key + "` |"), document.npos) << place;
+  };
+  for_each_property(schema(), "", named);
+  for_each_property(schema()["$defs"]["checker"], "", named);
+  for_each_property(schema()["$defs"]["transform_step"], "", named);
+  EXPECT_GT(keys, 70);
+}
+
+// Each JSON example of the documentation is a scene, or the beginning of one.
+TEST(SceneReference, ExamplesRead) {
+  std::stringstream text;
+  text << std::ifstream(std::string(RAYTREE_SOURCE_DIR) + "/docs/scene-format.md").rdbuf();
+  const std::string document = text.str();
+  int examples = 0;
+  const std::string fence = "```json\n";
+  for (auto begin = document.find(fence); begin != document.npos; begin = document.find(fence, begin + 1)) {
+    const auto start = begin + fence.size();
+    const std::string example = document.substr(start, document.find("```", start) - start);
+    EXPECT_NO_THROW(read_scene(example, "example", "")) << example;
+    ++examples;
+  }
+  EXPECT_GE(examples, 3);
+}
+
+}  // namespace
+}  // namespace raytree

@@ -1,0 +1,314 @@
+// No ray hits the surface it left, and nearby surfaces are still found: random triangles (slivers too), spheres, discs
+// and planes of every size and place that a scene may have. kSurfaceError and kNormalError (geometry/surface.h) are
+// chosen so that this holds with a margin; halving them four times makes these tests fail.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "geometry/embree_intersector.h"
+#include "geometry/surface.h"
+
+namespace raytree {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  Vec3d direction() {
+    std::normal_distribution<double> gauss;
+    const Vec3d v(gauss(engine_), gauss(engine_), gauss(engine_));
+    return unit(v);
+  }
+  Vec3d in_cube(double reach) { return {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)}; }
+  /// To `side`, at heights from upright down to 1e-7 over the surface.
+  Vec3f leaving(const Vec3f& side) {
+    const Vec3d n = unit(Vec3d(side));
+    const Vec3d d = direction();
+    const Vec3d along = unit(d - n * d.dot(n));
+    const double height = uniform(0, 1) < 0.5 ? uniform(0, 1) : std::pow(10.0, uniform(-7, 0));
+    return Vec3f(unit(along * std::sqrt(1 - height * height) + n * height));
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// A shape's size, and the largest coordinate of its place.
+struct Setting {
+  double size, place;
+};
+
+const Setting kSettings[] = {{1e-4, 0},   {1e-4, 1e-3}, {1e-4, 1},   {1e-2, 0},   {1e-2, 10},  {1, 0},     {1, 1},
+                             {1, 1e3},    {1, 1e5},     {30, 1e4},   {1e3, 0},    {1e3, 1e3},  {1e3, 1e6}, {1e5, 1e5},
+                             {1e6, 0},    {1e6, 1e6}};
+
+struct Count {
+  int left = 0;   ///< rays that left a surface
+  int false_hits = 0;
+};
+
+/// Shoots rays at primitive after primitive, spawns from the hit to both sides, counts what meets its own primitive.
+/// `aim(i)` yields a point of primitive i, `own(hit, point, direction)` says whether a spawned ray's hit is a false one.
+template <class Aim, class Own>
+Count count_false_hits(const ShapeSet& shapes, int primitives, GeometryId geometry, double size, Random& random, Aim&& aim,
+                       Own&& own) {
+  const EmbreeIntersector intersector(shapes, EmbreeOptions{});
+  Count count;
+  RayBatch rays(64);
+  HitBatch hits(64);
+  for (int i = 0; i < primitives; ++i) {
+    const Vec3d target = aim(i);
+    const Vec3f origin(target + random.direction() * size * std::pow(10.0, random.uniform(-1, 1.5)));
+    if (Vec3d(origin) == target) continue;
+    const Vec3f direction(unit(target - Vec3d(origin)));
+    const Hit hit = intersector.intersect_one(origin, direction, kInfinity);
+    if (hit.geometry != geometry || hit.primitive != static_cast<std::uint32_t>(i)) continue;
+    const SurfacePoint point = surface_at(shapes, origin, direction, hit, false);
+    for (const float side : {1.0f, -1.0f}) {
+      const Vec3f normal = point.geometric_normal * side;
+      rays.size = 0;
+      for (int k = 0; k < 8; ++k) rays.push(offset_origin(point, normal), random.leaving(normal), kInfinity);
+      for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
+        intersector.intersect(rays, coherence, hits);
+        for (int k = 0; k < 8; ++k) {
+          ++count.left;
+          if (hits.geometry[k] == geometry && hits.primitive[k] == hit.primitive)
+            count.false_hits += own(hits[static_cast<std::size_t>(k)], point, rays.direction(static_cast<std::size_t>(k)), side);
+        }
+      }
+    }
+  }
+  return count;
+}
+
+/// Triangles with edges of about `size`, of the given least height over their longest edge.
+Count triangle_false_hits(const Setting& setting, double aspect, bool level, Random& random) {
+  const int n = 1500;
+  ShapeSet shapes;
+  shapes.meshes.resize(1);
+  TriangleMesh& mesh = shapes.meshes[0].mesh;
+  std::vector<Vec3d> inside;
+  for (int i = 0; i < n; ++i) {
+    // Far enough apart that a spawned ray's nearest hit is seldom another triangle.
+    const Vec3d place = random.in_cube(setting.place + 30 * setting.size);
+    Vec3d along = random.direction(), across = random.direction();
+    if (level) along.y = across.y = 0;  // horizontal: a floor's normal has components that are exactly 0
+    along = unit(along);
+    across = unit(across - along * across.dot(along));
+    const double apex = random.uniform(-0.2, 1.2);
+    const Vec3d corners[3] = {place, place + along * setting.size, place + (along * apex + across * aspect) * setting.size};
+    Vec3d p[3];
+    for (int c = 0; c < 3; ++c) {
+      mesh.positions.push_back(Vec3f(corners[c]));
+      mesh.corners.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
+      p[c] = Vec3d(mesh.positions.back());
+    }
+    double u = random.uniform(0, 1), v = random.uniform(0, 1);
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    inside.push_back(p[0] * (1 - u - v) + p[1] * u + p[2] * v);
+  }
+  return count_false_hits(
+      shapes, n, kFirstMeshGeometry, setting.size, random, [&](int i) { return inside[static_cast<std::size_t>(i)]; },
+      [](const Hit&, const SurfacePoint&, const Vec3f&, float) { return true; });
+}
+
+TEST(SelfIntersection, NoRayHitsTheTriangleItLeft) {
+  Random random(1);
+  for (const Setting& setting : kSettings)
+    for (const bool level : {false, true}) {
+      const Count count = triangle_false_hits(setting, 0.5, level, random);
+      EXPECT_EQ(count.false_hits, 0) << "size " << setting.size << " place " << setting.place << " of " << count.left;
+      // Where the size is a few ulp of the place, most aims miss.
+      if (setting.size > 1e-4 * setting.place) {
+        EXPECT_GT(count.left, 20000) << "size " << setting.size << " place " << setting.place;
+      }
+    }
+}
+
+TEST(SelfIntersection, NoRayHitsTheSliverItLeft) {
+  Random random(2);
+  for (const double aspect : {1e-1, 1e-2, 1e-3})
+    for (const Setting& setting : {Setting{1, 0}, Setting{1, 1}, Setting{1e3, 1e3}, Setting{1e-4, 0}})
+      for (const bool level : {false, true}) {
+        const Count count = triangle_false_hits(setting, aspect, level, random);
+        EXPECT_EQ(count.false_hits, 0) << "aspect " << aspect << " size " << setting.size << " place " << setting.place
+                                       << " of " << count.left << (level ? " level" : "");
+        EXPECT_GT(count.left, 5000);
+      }
+}
+
+TEST(SelfIntersection, NoRayHitsTheSphereItLeftButForItsFarSide) {
+  Random random(3);
+  for (const Setting& setting : kSettings) {
+    if (setting.size < 1e-5 * setting.place) continue;  // not a sphere any more: its radius is a few ulp
+    const int n = 1500;
+    ShapeSet shapes;
+    for (int i = 0; i < n; ++i) {
+      const Vec3f c(random.in_cube(setting.place + 30 * setting.size));
+      shapes.spheres.center_radius.push_back({c.x, c.y, c.z, static_cast<float>(setting.size * random.uniform(0.1, 1))});
+      shapes.spheres.shape.push_back(0);
+    }
+    const auto center = [&](std::size_t i) {
+      const Imath::V4f& s = shapes.spheres.center_radius[i];
+      return Vec3d(s.x, s.y, s.z);
+    };
+    const Count count = count_false_hits(
+        shapes, n, kSphereGeometry, setting.size, random,
+        [&](int i) {
+          const auto k = static_cast<std::size_t>(i);
+          return center(k) + random.direction() * (random.uniform(0, 1) * shapes.spheres.center_radius[k].w);
+        },
+        [&](const Hit& hit, const SurfacePoint& point, const Vec3f& direction, float side) {
+          if (side > 0) return true;
+          const double chord = 2 * std::abs(Vec3d(direction).dot(Vec3d(point.geometric_normal))) *
+                               shapes.spheres.center_radius[hit.primitive].w;
+          return hit.distance < chord / 2 && chord > 4 * point.clearance;
+        });
+    EXPECT_EQ(count.false_hits, 0) << "size " << setting.size << " place " << setting.place << " of " << count.left;
+    EXPECT_GT(count.left, 10000);
+  }
+}
+
+TEST(SelfIntersection, NoRayHitsTheDiscItLeft) {
+  Random random(4);
+  for (const Setting& setting : kSettings)
+    for (const bool level : {false, true}) {
+      if (setting.size < 1e-5 * setting.place) continue;
+      const int n = 1500;
+      ShapeSet shapes;
+      std::vector<Vec3d> inside;
+      for (int i = 0; i < n; ++i) {
+        const Vec3f c(random.in_cube(setting.place + 30 * setting.size)), normal(level ? Vec3d(0, 1, 0) : random.direction());
+        const double radius = setting.size * random.uniform(0.1, 1);
+        shapes.discs.center_radius.push_back({c.x, c.y, c.z, static_cast<float>(radius)});
+        shapes.discs.normal.push_back(normal);
+        shapes.discs.shape.push_back(0);
+        const Vec3d nd = unit(Vec3d(normal)), d = random.direction();
+        inside.push_back(Vec3d(c) + unit(d - nd * d.dot(nd)) * (0.99 * radius * std::sqrt(random.uniform(0, 1))));
+      }
+      const Count count = count_false_hits(
+          shapes, n, kDiscGeometry, setting.size, random, [&](int i) { return inside[static_cast<std::size_t>(i)]; },
+          [](const Hit&, const SurfacePoint&, const Vec3f&, float) { return true; });
+      EXPECT_EQ(count.false_hits, 0) << "size " << setting.size << " place " << setting.place << " of " << count.left;
+      if (setting.size > 1e-4 * setting.place) {
+        EXPECT_GT(count.left, 10000);
+      }
+    }
+}
+
+TEST(SelfIntersection, NoRayHitsThePlaneItLeft) {
+  Random random(5);
+  for (const Setting& setting : kSettings) {
+    Count count;
+    for (int i = 0; i < 200; ++i) {
+      ShapeSet shapes;
+      shapes.planes.push_back({random.in_cube(setting.place + setting.size),
+                               i % 2 == 0 ? Vec3d(0, 1, 0) : random.direction(), 0});
+      const Vec3d normal = shapes.planes[0].normal;
+      Vec3d target = shapes.planes[0].point + random.in_cube(setting.size);
+      target -= normal * (target - shapes.planes[0].point).dot(normal);
+      const Count one = count_false_hits(
+          shapes, 1, kPlaneGeometry, setting.size, random, [&](int) { return target; },
+          [](const Hit&, const SurfacePoint&, const Vec3f&, float) { return true; });
+      count.left += one.left;
+      count.false_hits += one.false_hits;
+    }
+    EXPECT_EQ(count.false_hits, 0) << "size " << setting.size << " place " << setting.place << " of " << count.left;
+  }
+}
+
+TEST(SelfIntersection, RaysAlongASharedEdgeDoNotHitTheNeighborOfAFlatMesh) {
+  // Two triangles of one flat quad, tilted: what leaves one close to the diagonal must not meet the other either.
+  Random random(6);
+  for (const Setting& setting : {Setting{1, 0}, Setting{1, 10}, Setting{1e3, 1e3}, Setting{1e-3, 1}}) {
+    int false_hits = 0, left = 0;
+    for (int i = 0; i < 300; ++i) {
+      ShapeSet shapes;
+      shapes.meshes.resize(1);
+      TriangleMesh& mesh = shapes.meshes[0].mesh;
+      const Vec3d place = random.in_cube(setting.place), a = random.direction() * setting.size;
+      Vec3d b = random.direction() * setting.size;
+      mesh.positions.assign({Vec3f(place), Vec3f(place + a), Vec3f(place + a + b), Vec3f(place + b)});
+      mesh.corners.assign({0, 1, 2, 0, 2, 3});
+      const EmbreeIntersector intersector(shapes, EmbreeOptions{});
+      const Vec3d at = place + a * 0.5 + b * 0.5 + (a + b) * random.uniform(-0.45, 0.45) + a * random.uniform(-1e-3, 1e-3);
+      const Vec3f origin(at + random.direction() * setting.size);
+      const Vec3f direction(unit(at - Vec3d(origin)));
+      const Hit hit = intersector.intersect_one(origin, direction, kInfinity);
+      if (hit.geometry == kNoGeometry) continue;
+      const SurfacePoint point = surface_at(shapes, origin, direction, hit, false);
+      const Vec3f side = point.geometric_normal.dot(direction) < 0 ? point.geometric_normal : -point.geometric_normal;
+      for (int k = 0; k < 16; ++k, ++left) {
+        // The four corners are rounded, so the quad is bent by up to two ulp of the place: a ray lower than that over
+        // its own triangle may meet the other one.
+        const Vec3f leaving = random.leaving(side);
+        const double bend = 8 * 0x1p-24 * (setting.place + 2 * setting.size) / setting.size;
+        if (leaving.dot(side) < 4 * bend) continue;
+        false_hits += intersector.occluded_one(offset_origin(point, side), leaving, kInfinity);
+      }
+    }
+    EXPECT_EQ(false_hits, 0) << "size " << setting.size << " place " << setting.place;
+    EXPECT_GT(left, 3000);
+  }
+}
+
+TEST(SelfIntersection, NearbySurfacesAreStillFound) {
+  // Concentric spheres with a gap of 1e-4 of the radius (a fixed offset of 9e-5 of it fails): a ray that enters the
+  // outer one meets the inner one next; and sheets as close as 1e-4 of their size.
+  Random random(7);
+  for (const double radius : {1e-4, 1.0, 1e6}) {
+    ShapeSet shapes;
+    const auto r = static_cast<float>(radius);
+    shapes.spheres.center_radius.assign({{0, 0, 0, r}, {0, 0, 0, r * (1 - 1e-4f)}});
+    shapes.spheres.shape.assign(2, 0);
+    const EmbreeIntersector intersector(shapes, EmbreeOptions{});
+    int entered = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3d out = random.direction();
+      const Vec3f origin(out * radius * 3.0), direction(unit(-out + random.in_cube(0.25)));
+      const Hit outer = intersector.intersect_one(origin, direction, kInfinity);
+      if (outer.geometry == kNoGeometry) continue;
+      ASSERT_EQ(outer.primitive, 0u);
+      const SurfacePoint point = surface_at(shapes, origin, direction, outer, false);
+      // Steep enough to meet the inner one: sin i < 1 - 1e-4.
+      if (-point.geometric_normal.dot(direction) < 0.05f) continue;
+      const Hit inner = intersector.intersect_one(offset_origin(point, -point.geometric_normal), direction, kInfinity);
+      ASSERT_EQ(inner.primitive, 1u) << radius;
+      ++entered;
+      EXPECT_LT(inner.distance, radius * 1e-4 / 0.04);
+      // And back out from the inner one.
+      const SurfacePoint deeper = surface_at(shapes, point.position, direction, inner, false);
+      const Hit back = intersector.intersect_one(offset_origin(deeper, deeper.geometric_normal), deeper.geometric_normal, kInfinity);
+      ASSERT_EQ(back.primitive, 0u);
+    }
+    EXPECT_GT(entered, 1000);
+
+    ShapeSet sheets;
+    sheets.meshes.resize(2);
+    for (int k = 0; k < 2; ++k) {
+      TriangleMesh& mesh = sheets.meshes[static_cast<std::size_t>(k)].mesh;
+      const float z = r * (k == 0 ? 0 : -1e-4f);
+      mesh.positions.assign({{-r, -r, z}, {r, -r, z}, {0, r, z}});
+      mesh.corners.assign({0, 1, 2});
+    }
+    const EmbreeIntersector pair(sheets, EmbreeOptions{});
+    for (int i = 0; i < 500; ++i) {
+      const Vec3f direction(unit(Vec3d(0, 0, -1) + random.in_cube(0.4)));
+      const Vec3f origin(static_cast<float>(radius * random.uniform(-0.1, 0.1)), static_cast<float>(radius * random.uniform(-0.3, 0)), 0.2f * r);
+      const Hit first = pair.intersect_one(origin, direction, kInfinity);
+      ASSERT_EQ(first.geometry, kFirstMeshGeometry);
+      const SurfacePoint point = surface_at(sheets, origin, direction, first, false);
+      const Hit second = pair.intersect_one(offset_origin(point, {0, 0, -1}), direction, kInfinity);
+      ASSERT_EQ(second.geometry, kFirstMeshGeometry + 1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raytree
