@@ -17,11 +17,11 @@ namespace raytree {
 /// A hit ready for shading. Normals are turned to the side that the ray comes from; side is decided by the geometric
 /// normal.
 struct ShadingPoint {
-  SurfacePoint surface;      ///< normals turned to the ray's side
-  Vec3f direction;           ///< of the ray, unit
-  const Material* material;  ///< never null
-  Rgb diffuse;               ///< k_d here
-  bool leaving = false;      ///< the ray hit the surface from behind: it is leaving the inside
+  SurfacePoint surface;                ///< normals turned to the ray's side
+  Vec3f direction;                     ///< of the ray, unit
+  const Material* material = nullptr;  ///< set by shading_point()
+  Rgb diffuse;                         ///< k_d here
+  bool leaving = false;                ///< the ray hit the surface from behind: it is leaving the inside
 };
 
 inline ShadingPoint shading_point(const SurfacePoint& surface, const Vec3f& direction, const Material& material) {
