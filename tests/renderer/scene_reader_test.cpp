@@ -520,6 +520,10 @@ class Randomizer {
   float float_number(const Range& range = {}) { return static_cast<float>(number(range)); }
 
   void fill(const Field&, bool& x) { x = whole(0, 1) == 1; }
+  void fill(const Field&, std::optional<bool>& x) {
+    const int choice = whole(0, 2);
+    x = choice == 2 ? std::nullopt : std::optional(choice == 1);
+  }
   void fill(const Field& field, double& x) { x = number(field.range); }
   template <std::integral Integer>
   void fill(const Field& field, Integer& x) {
@@ -647,7 +651,7 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(LightDescription{}), 3 - 1) << "without name";
   EXPECT_EQ(count(CheckerPattern{}), 5);
   EXPECT_EQ(count(HighlightDescription{}), 2);
-  EXPECT_EQ(count(MaterialDescription{}), 7 - 1) << "without name";
+  EXPECT_EQ(count(MaterialDescription{}), 8 - 1) << "without name";
   EXPECT_EQ(count(FaceGroup{}), 4);
   EXPECT_EQ(count(MeshShape{}), 4);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";
