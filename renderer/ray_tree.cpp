@@ -184,6 +184,7 @@ bool TileTracer::State::finish_chunk() {
   rays.size = chunk_size;
   statistics.rays[static_cast<int>(RayKind::primary)] += chunk_size;
   statistics.samples += chunk_size;
+  statistics.deepest_level = std::max(statistics.deepest_level, 1);
   contexts = eye_rays.data();
   trace_batch(Coherence::coherent, true);
   while (!pending.empty()) {
