@@ -1,6 +1,5 @@
 // Row loading: how fast mesh files are read, and in how much memory. A program of its own measures it, since the memory
-// of a process is its own; its table lines become figures here.
-#include <fstream>
+// of a process is its own; its samples become figures here.
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/child_process.h"
@@ -20,9 +19,11 @@ std::vector<Figure> measure_loading(const MeasureContext& context) {
     figure.row = "loading";
     figure.what = line.at("what");
     figure.unit = line.at("unit");
-    figure.measured = {line.at("low"), line.at("median"), line.at("high"), line.at("count")};
-    figure.kind = line.contains("at_least") ? BoundKind::at_least : BoundKind::at_most;
-    figure.bound = line.at(line.contains("at_least") ? "at_least" : "at_most");
+    figure.measured = spread_of(line.at("samples").get<std::vector<double>>());
+    const bool at_least = line.contains("at_least");
+    figure.bound = line.at(at_least ? "at_least" : "at_most");
+    // A speed of at least 0 is no bound.
+    if (figure.bound > 0) figure.kind = at_least ? BoundKind::at_least : BoundKind::at_most;
     figures.push_back(figure);
   }
   return figures;

@@ -8,13 +8,13 @@
 
 namespace raytree::benchmarks {
 
-/// spheres-1980: glass and mirror sphere over a checker, 1280x960, no anti-aliasing, the scene's own depth and cutoff.
+/// spheres-1980 at 1280x960 without anti-aliasing; depth and cutoff are the scene's own.
 SceneDescription reference_scene();
 
 /// The same with a terrain of about a million triangles behind the spheres, seen straight, mirrored and refracted.
 SceneDescription reference_scene_with_mesh();
 
-/// The built-in terrain with so many triangles, 1920x1080.
+/// The built-in terrain with so many triangles, 1920x1080; all else is the scene's own.
 SceneDescription terrain_scene(std::int64_t triangles);
 inline constexpr const char* kTerrainSceneName = "terrain";                   ///< as `raytree render` takes it
 inline constexpr const char* kTerrainCountPath = "shapes.terrain.triangles";  ///< as `--set` takes it
