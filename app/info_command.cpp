@@ -32,8 +32,10 @@ std::optional<InfoOptions> parse_info_options(const Words& words) {
   InfoOptions options;
   std::string threads, channels;
   CLI::App command("Say what is in a scene, and what it will take, without rendering.", "raytree info");
-  command.add_option("SCENE", options.scene.scene,
-                     "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)");
+  command
+      .add_option("SCENE", options.scene.scene,
+                  "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)")
+      ->type_name("");
   command.add_flag("--json", options.json, "Print JSON");
   add_scene_flags(command, options.scene, false);
   command.add_option("--channels", channels, "Channel groups that the film is reckoned with, or all")

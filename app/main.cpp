@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <new>
 
@@ -102,5 +103,10 @@ int main(int argc, char** argv) {
   // A reader that goes away makes writing fail, which is reported, in place of ending the process without a word.
   std::signal(SIGPIPE, SIG_IGN);
   raytree::app::occupy_standard_streams();
-  return raytree::app::guarded_run(raytree::app::Words(argv + (argc > 0 ? 1 : 0), argv + argc));
+  const int status = raytree::app::guarded_run(raytree::app::Words(argv + (argc > 0 ? 1 : 0), argv + argc));
+  if (status == raytree::app::kSuccess) return status;
+  // A run that failed or was interrupted does not wait for the image library, whose loading in the background would
+  // be waited for by an ordinary exit.
+  std::fflush(nullptr);
+  _exit(status);
 }

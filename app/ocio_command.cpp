@@ -80,8 +80,10 @@ int check_views(const std::string& config) {
 int ocio_command(const Words& words) {
   std::string action, config;
   CLI::App command("List the displays and views of a config, or check the values that they give.", "raytree ocio");
-  command.add_option("ACTION", action,
-                     "list: displays and views; check: values against those known (status 1 if one is off)");
+  command
+      .add_option("ACTION", action,
+                  "list: displays and views; check: values against those known (status 1 if one is off)")
+      ->type_name("");
   command
       .add_option("--ocio", config, "OpenColorIO config; default: list: $OCIO, else the built-in one; check: built-in")
       ->type_name("FILE");

@@ -28,12 +28,13 @@ struct RenderFlags {
 };
 
 void add_flags(CLI::App& command, RenderFlags& flags) {
-  command.add_option("SCENE", flags.words, "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)");
+  command.add_option("SCENE", flags.words, "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)")
+      ->type_name("");
   command
       .add_option(
           "-o,--output", flags.outputs,
           "Image file: .exr (scene-linear), .png, .jpg, .tif (display-referred); - is standard output; repeatable")
-      ->type_name("FILE...")
+      ->type_name("FILE")
       ->allow_extra_args(false)
       ->group("Output");
   command.add_option("--format", flags.format, "Format of standard output: exr, png, jpeg or tiff")
@@ -129,13 +130,15 @@ std::vector<OutputFile> parse_outputs(const RenderFlags& flags) {
 PixelWindow parse_crop(const std::string& text) {
   const std::size_t first = text.find('+');
   const std::size_t second = first == std::string::npos ? first : text.find('+', first + 1);
-  if (second == std::string::npos)
-    throw usage_error(fmt::format("--crop: \"{}\" is not WxH+X+Y, for example 320x200+640+0", text));
-  const ImageSize size = parse_size("--crop", text.substr(0, first));
   constexpr std::int64_t kMost = std::numeric_limits<int>::max();
-  const auto x = parse_integer("--crop", text.substr(first + 1, second - first - 1), 0, kMost);
-  const auto y = parse_integer("--crop", text.substr(second + 1), 0, kMost);
-  return {static_cast<int>(x), static_cast<int>(y), size.width, size.height};
+  if (second != std::string::npos) {
+    const auto x = whole_number(text.substr(first + 1, second - first - 1)), y = whole_number(text.substr(second + 1));
+    if (x && y && *x >= 0 && *y >= 0 && *x <= kMost && *y <= kMost) {
+      const ImageSize size = parse_size("--crop " + text, text.substr(0, first));
+      return {static_cast<int>(*x), static_cast<int>(*y), size.width, size.height};
+    }
+  }
+  throw usage_error(fmt::format("--crop: \"{}\" is not WxH+X+Y in pixels, for example 320x200+640+0", text));
 }
 
 ProgressMode parse_progress(const std::string& text) {

@@ -123,11 +123,12 @@ SceneDescription read_scene_argument(const SceneFlags& flags, Warnings& warnings
 
 ImageSize parse_size(const std::string& flag, const std::string& text) {
   const std::size_t cross = text.find('x');
-  if (cross == std::string::npos)
-    throw usage_error(fmt::format("{}: \"{}\" is not WxH, for example 1920x1080", flag, text));
-  constexpr std::int64_t kMost = std::numeric_limits<int>::max();
-  return {static_cast<int>(parse_integer(flag, text.substr(0, cross), 1, kMost)),
-          static_cast<int>(parse_integer(flag, text.substr(cross + 1), 1, kMost))};
+  const auto most = static_cast<std::int64_t>(std::numeric_limits<int>::max());
+  const auto width = whole_number(text.substr(0, cross)),
+             height = whole_number(cross == std::string::npos ? std::string() : text.substr(cross + 1));
+  if (cross == std::string::npos || !width || !height || *width < 1 || *height < 1 || *width > most || *height > most)
+    throw usage_error(fmt::format("{}: \"{}\" is not WxH in pixels, for example 1920x1080", flag, text));
+  return {static_cast<int>(*width), static_cast<int>(*height)};
 }
 
 void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {

@@ -8,12 +8,6 @@
 
 namespace raytree::app {
 
-/// Least number of insertions, deletions, replacements and swaps of neighbours that turn a into b.
-int edit_distance(std::string_view a, std::string_view b);
-
-/// The candidate nearest to `word`, ignoring case; none when even the nearest differs in more than a third of it.
-std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates);
-
 /// "; did you mean X?", or nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 

@@ -48,6 +48,10 @@ bool parse_usage(CLI::App& command, const Words& words) {
   } catch (const CLI::ParseError& error) {
     throw usage_error(error.what());
   }
+  // An empty value is a mistake (an unset variable of a script, most likely), never the absence of the flag.
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& value : option->results())
+      if (value.empty()) throw usage_error(option->get_name() + ": the value is empty");
   const std::vector<std::string> extras = command.remaining();
   for (const std::string& word : extras)
     if (word.size() > 1 && word[0] == '-') {
@@ -60,13 +64,18 @@ bool parse_usage(CLI::App& command, const Words& words) {
   return true;
 }
 
-std::int64_t parse_integer(const std::string& flag, const std::string& text, std::int64_t least, std::int64_t most) {
+std::optional<std::int64_t> whole_number(const std::string& text) {
   std::int64_t value = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, code] = std::from_chars(text.data(), end, value);
-  if (code != std::errc() || stop != end || value < least || value > most)
+  return code == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+}
+
+std::int64_t parse_integer(const std::string& flag, const std::string& text, std::int64_t least, std::int64_t most) {
+  const std::optional<std::int64_t> value = whole_number(text);
+  if (!value || *value < least || *value > most)
     throw usage_error(fmt::format("{}: \"{}\" is not a whole number from {} to {}", flag, text, least, most));
-  return value;
+  return *value;
 }
 
 double parse_real(const std::string& flag, const std::string& text) {

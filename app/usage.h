@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ void prepare_usage(CLI::App& command);
 /// Parses words. False when the help or the version was asked for and has been printed. Throws Error (bad_input).
 bool parse_usage(CLI::App& command, const Words& words);
 
+/// The whole number that all of `text` is, if it is one.
+std::optional<std::int64_t> whole_number(const std::string& text);
 /// The whole number that `text` is; `flag` stands in the message of the Error thrown when it is none, or out of range.
 std::int64_t parse_integer(const std::string& flag, const std::string& text, std::int64_t least, std::int64_t most);
 /// The finite number that `text` is.

@@ -1,7 +1,8 @@
 // Loading: how fast the readers of OBJ and PLY are, and how much memory they take at their peak over the arrays that
 // they return. Writes a mesh of about a million triangles in four formats into a temporary folder, reads each several
-// times and prints a table. Exit status 3 when a row falls short of its bound, 1 when a mesh comes back wrong.
-// Usage: loading_benchmark [REPETITIONS]
+// times and prints a table, or JSON that `./run measure loading` reads. Exit status 3 when a row of the table falls
+// short of its bound, 1 when a mesh comes back wrong.
+// Usage: loading_benchmark [REPETITIONS | --json]
 #include <malloc.h>
 #include <unistd.h>
 
@@ -151,7 +152,16 @@ struct TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 };
 
-int run(int repetitions) {
+/// Samples as one object of the JSON array that `./run measure loading` reads.
+void print_json(bool first, const std::string& what, const char* unit, const std::vector<double>& samples,
+                const char* bound_name, double bound) {
+  std::printf("%s{\"what\": \"%s\", \"unit\": \"%s\", \"%s\": %g, \"samples\": [", first ? "[" : ",\n ", what.c_str(),
+              unit, bound_name, bound);
+  for (std::size_t i = 0; i < samples.size(); ++i) std::printf("%s%g", i == 0 ? "" : ", ", samples[i]);
+  std::printf("]}");
+}
+
+int run(int repetitions, bool json) {
   constexpr double kMostMemory = 2.5;
   const Row rows[] = {{"PLY binary, little-endian", "little.ply", Kind::ply_little, 300},
                       {"PLY binary, big-endian", "big.ply", Kind::ply_big, 300},
@@ -159,9 +169,11 @@ int run(int repetitions) {
                       {"OBJ", "waves.obj", Kind::obj, 100}};
   const PolygonMesh mesh = waves();
   const TemporaryFolder folder;
-  std::printf("%zu triangles, %u hardware threads, best of %d\n", mesh.face_count(), std::thread::hardware_concurrency(),
-              repetitions);
-  std::printf("%-28s %8s %9s %9s %9s  %s\n", "file", "MB", "ms", "MB/s", "peak/kept", "bounds");
+  if (!json) {
+    std::printf("%zu triangles, %u hardware threads, best of %d\n", mesh.face_count(),
+                std::thread::hardware_concurrency(), repetitions);
+    std::printf("%-28s %8s %9s %9s %9s  %s\n", "file", "MB", "ms", "MB/s", "peak/kept", "bounds");
+  }
   bool short_of = false;
   for (const Row& row : rows) {
     const std::string path = (folder.path / row.file).string();
@@ -171,13 +183,16 @@ int run(int repetitions) {
     }
     const double megabytes = static_cast<double>(std::filesystem::file_size(path)) * 1e-6;
     double best = 1e9, ratio = 0;
+    std::vector<double> speeds;
     for (int i = 0; i < repetitions; ++i) {
       Warnings warnings;
       const std::size_t before = held_bytes;
       peak_bytes = before;
       const auto start = std::chrono::steady_clock::now();
       const PolygonMesh read = read_mesh_file(path, warnings);
-      best = std::min(best, seconds_since(start));
+      const double seconds = seconds_since(start);
+      best = std::min(best, seconds);
+      speeds.push_back(megabytes / seconds);
       ratio = std::max(ratio, static_cast<double>(peak_bytes - before) / static_cast<double>(memory_bytes(read)));
       // Shortest decimal notation gives every float back: the mesh must come back in bits.
       if (read.corners != mesh.corners || read.positions != mesh.positions || !warnings.empty()) {
@@ -185,11 +200,21 @@ int run(int repetitions) {
         return 1;
       }
     }
+    if (json) {
+      const std::string name = std::string("reading ") + row.name + ", 1M triangles";
+      print_json(&row == rows, name, "MB/s", speeds, "at_least", row.least_speed);
+      print_json(false, name + ": peak memory / arrays kept", "", {ratio}, "at_most", kMostMemory);
+      continue;
+    }
     const double speed = megabytes / best;
     const bool good = speed >= row.least_speed && ratio <= kMostMemory;
     short_of = short_of || !good;
     std::printf("%-28s %8.1f %9.1f %9.0f %9.2f  >= %.0f MB/s, <= %.1f: %s\n", row.name, megabytes, best * 1e3, speed,
                 ratio, row.least_speed, kMostMemory, good ? "ok" : "SHORT");
+  }
+  if (json) {
+    std::printf("]\n");
+    return 0;
   }
   // What follows loading, for the same mesh; no bounds of its own beyond the goal for normals.
   constexpr double kMostNormalSeconds = 0.3;
@@ -222,7 +247,8 @@ int run(int repetitions) {
 
 int main(int count, char** arguments) {
   try {
-    return raytree::run(std::max(1, count > 1 ? std::atoi(arguments[1]) : 7));
+    const bool json = count > 1 && std::strcmp(arguments[1], "--json") == 0;
+    return raytree::run(count > 1 && !json ? std::max(1, std::atoi(arguments[1])) : 7, json);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "loading_benchmark: %s\n", error.what());
     return 1;

@@ -7,6 +7,10 @@ target_compile_options(raytree_options INTERFACE
   -ffp-contract=off
   # errno and floating-point traps of math functions are not used; values do not change.
   -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # False alarms at std::string's operator+ (GCC bug 105651).
+  target_compile_options(raytree_options INTERFACE -Wno-restrict)
+endif()
 if(RAYTREE_WARNINGS_AS_ERRORS)
   target_compile_options(raytree_options INTERFACE -Werror)
 endif()

@@ -52,14 +52,14 @@ Statement classify(const char*& p, const char* end) {
   for (const std::string_view other : {"s", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib",
                                        "shadow_obj", "trace_obj", "ctech", "stech", "call", "csh"})
     if (word == other) return Statement::silent;
-  for (const std::string_view other : {"vp", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim",
-                                       "hole", "scrv", "sp", "end", "con", "bzp", "bsp", "cdc", "cdp", "res"})
+  for (const std::string_view other : {"vp",   "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim",
+                                       "hole", "scrv",   "sp",  "end",  "con",  "bzp",  "bsp",   "cdc",  "cdp",  "res"})
     if (word == other) return Statement::free_form;
   return Statement::unknown;
 }
 
-/// Calls statement(kind, begin, end, source) for each logical line; [begin, end) follows the first word, `source` is the
-/// place in the text for messages. Continued lines are joined in a scratch string. Stops when it returns false.
+/// Calls statement(kind, begin, end, source) for each logical line; [begin, end) follows the first word, `source` is
+/// the place in the text for messages. Continued lines are joined in a scratch string. Stops when it returns false.
 template <class Function>
 void for_each_statement(const char* p, const char* const end, char newline, Function&& statement) {
   std::string joined;
@@ -153,10 +153,13 @@ struct GroupChange {
   const char* material;
 };
 
+/// Of a chunk: one every 16 bytes of text. More of them are no groups but an attack on memory.
+constexpr std::size_t kMaxChanges = kChunkBytes / 16;
+
 struct Findings {
   const char* error_place = nullptr;
   std::string error;
-  Tally extra_components, unknown, line_or_point, free_form, library;
+  Tally extra_components, unknown, line_or_point, free_form, library, changes_dropped;
   Bounds3d box;
   std::vector<GroupChange> changes;
   const char* last_name = nullptr;
@@ -264,7 +267,8 @@ class ObjParser {
     std::int64_t value = 0;
     const char* const after = scan_integer(p, end, value);
     if (!after) {
-      error = in_quotes(word_at(p, end)) + " is not a corner of a face (vertex, vertex/texture, vertex//normal or "
+      error = in_quotes(word_at(p, end)) +
+              " is not a corner of a face (vertex, vertex/texture, vertex//normal or "
               "vertex/texture/normal)";
       return nullptr;
     }
@@ -333,66 +337,66 @@ class ObjParser {
     Findings& found = findings_[chunk];
     Counts at = starts_[chunk];
     bool names_changed = false;
-    for_each_statement(
-        borders_[chunk], borders_[chunk + 1], newline_,
-        [&](Statement kind, const char* p, const char* end, const char* source) {
-          bool good = true;
-          switch (kind) {
-            case Statement::position:
-              good = parse_position(p, end, mesh_.positions[at.positions++], found, source);
-              break;
-            case Statement::normal:
-              if (totals_.names_normals) {
-                double v[3];
-                good = scan_numbers(p, end, v, 3, 3, found.error) != nullptr;
-                if (good)
-                  mesh_.normals[at.normals] =
-                      Vec3f(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
-              }
-              ++at.normals;
-              break;
-            case Statement::texture_coordinates:
-              if (totals_.names_texture) {
-                double v[2] = {0, 0};
-                good = scan_numbers(p, end, v, 2, 1, found.error) != nullptr;
-                if (good)
-                  mesh_.texture_coordinates[at.texture_coordinates] =
-                      Vec2f(static_cast<float>(v[0]), static_cast<float>(v[1]));
-              }
-              ++at.texture_coordinates;
-              break;
-            case Statement::face:
-              if (names_changed) found.changes.push_back({at.faces, found.last_name, found.last_material});
-              names_changed = false;
-              good = parse_face(p, end, at, found.error);
-              break;
-            case Statement::group:
-              found.last_name = source;
-              names_changed = true;
-              break;
-            case Statement::material:
-              found.last_material = source;
-              names_changed = true;
-              break;
-            case Statement::library:
-              found.library.add(source);
-              break;
-            case Statement::line_or_point:
-              found.line_or_point.add(source);
-              break;
-            case Statement::free_form:
-              found.free_form.add(source);
-              break;
-            case Statement::unknown:
-              found.unknown.add(source);
-              break;
-            case Statement::silent:
-            case Statement::none:
-              break;
-          }
-          if (!good) found.error_place = source;
-          return good;
-        });
+    for_each_statement(borders_[chunk], borders_[chunk + 1], newline_,
+                       [&](Statement kind, const char* p, const char* end, const char* source) {
+                         bool good = true;
+                         switch (kind) {
+                           case Statement::position:
+                             good = parse_position(p, end, mesh_.positions[at.positions++], found, source);
+                             break;
+                           case Statement::normal:
+                             if (totals_.names_normals) {
+                               double v[3];
+                               good = scan_numbers(p, end, v, 3, 3, found.error) != nullptr;
+                               if (good)
+                                 mesh_.normals[at.normals] = Vec3f(static_cast<float>(v[0]), static_cast<float>(v[1]),
+                                                                   static_cast<float>(v[2]));
+                             }
+                             ++at.normals;
+                             break;
+                           case Statement::texture_coordinates:
+                             if (totals_.names_texture) {
+                               double v[2] = {0, 0};
+                               good = scan_numbers(p, end, v, 2, 1, found.error) != nullptr;
+                               if (good)
+                                 mesh_.texture_coordinates[at.texture_coordinates] =
+                                     Vec2f(static_cast<float>(v[0]), static_cast<float>(v[1]));
+                             }
+                             ++at.texture_coordinates;
+                             break;
+                           case Statement::face:
+                             if (names_changed)
+                               found.changes.push_back({at.faces, found.last_name, found.last_material});
+                             names_changed = false;
+                             good = parse_face(p, end, at, found.error);
+                             break;
+                           case Statement::group:
+                             found.last_name = source;
+                             names_changed = true;
+                             break;
+                           case Statement::material:
+                             found.last_material = source;
+                             names_changed = true;
+                             break;
+                           case Statement::library:
+                             found.library.add(source);
+                             break;
+                           case Statement::line_or_point:
+                             found.line_or_point.add(source);
+                             break;
+                           case Statement::free_form:
+                             found.free_form.add(source);
+                             break;
+                           case Statement::unknown:
+                             found.unknown.add(source);
+                             break;
+                           case Statement::silent:
+                           case Statement::none:
+                             break;
+                         }
+                         if (!good) found.error_place = source;
+                         return good;
+                       });
   }
 
   void report_first_error() const {
@@ -468,10 +472,10 @@ class ObjParser {
       if (found.last_material) material = found.last_material;
     }
     if (dropped > 0)
-      warnings_.push_back({location(place ? place : text_.data()),
-                           "groups beyond the first 262144 joined into one, from face " +
-                               std::to_string(dropped_from + 1) + " on",
-                           dropped});
+      warnings_.push_back(
+          {location(place ? place : text_.data()),
+           "groups beyond the first 262144 joined into one, from face " + std::to_string(dropped_from + 1) + " on",
+           dropped});
     std::vector<FaceGroup>& groups = mesh_.groups;
     for (std::size_t i = 0; i < groups.size(); ++i)
       groups[i].face_count = static_cast<std::uint32_t>(
@@ -487,19 +491,22 @@ class ObjParser {
       all.line_or_point.add(found.line_or_point);
       all.free_form.add(found.free_form);
       all.library.add(found.library);
+      all.changes_dropped.add(found.changes_dropped);
     }
     const auto warn = [&](const Tally& tally, const std::string& message) {
       if (tally.count > 0) warnings_.push_back({location(tally.first), message, tally.count});
     };
     const char* const end = text_.data() + text_.size();
     if (all.unknown.count > 0)
-      warn(all.unknown, "unknown statements skipped, the first is " +
-                            in_quotes(word_at(skip_blanks(all.unknown.first, end), end)));
+      warn(all.unknown,
+           "unknown statements skipped, the first is " + in_quotes(word_at(skip_blanks(all.unknown.first, end), end)));
+    warn(all.changes_dropped, "groups of a text that names too many joined with the one before");
     warn(all.line_or_point, "lines and points dropped: only faces are drawn");
     warn(all.free_form, "statements of free-form curves and surfaces dropped");
     warn(all.library, "material libraries not read");
-    warn(all.extra_components, "vertices with more than three components, of which the others (weight or color) are "
-                               "dropped");
+    warn(all.extra_components,
+         "vertices with more than three components, of which the others (weight or color) are "
+         "dropped");
     if (!totals_.names_normals && totals_.normals > 0)
       warnings_.push_back({locate_statement(Statement::normal, 0), "normals that no face uses dropped",
                            static_cast<std::int64_t>(totals_.normals)});

@@ -171,8 +171,8 @@ class PlyParser {
 
   // ---- header
 
-  /// The next header line; false at the end of the file. Lines end with a line feed, a carriage return before it being a
-  /// blank, so that binary data may begin with either; with a lone carriage return where the first line does.
+  /// The next header line; false at the end of the file. Lines end with a line feed, a carriage return before it being
+  /// a blank, so that binary data may begin with either; with a lone carriage return where the first line does.
   bool next_line(std::string_view& line) {
     if (cursor_ >= bytes_.size()) return false;
     if (header_lines_ == 0) {
@@ -274,9 +274,9 @@ class PlyParser {
 
     std::array<int, kRoles> seen{};
     constexpr std::pair<std::string_view, Role> kRoleNames[] = {
-        {"x", Role::x},         {"y", Role::y}, {"z", Role::z}, {"nx", Role::nx}, {"ny", Role::ny},        {"nz", Role::nz},
-        {"u", Role::u},         {"v", Role::v}, {"s", Role::u}, {"t", Role::v},   {"texture_u", Role::u},
-        {"texture_v", Role::v},
+        {"x", Role::x},   {"y", Role::y},   {"z", Role::z},         {"nx", Role::nx},
+        {"ny", Role::ny}, {"nz", Role::nz}, {"u", Role::u},         {"v", Role::v},
+        {"s", Role::u},   {"t", Role::v},   {"texture_u", Role::u}, {"texture_v", Role::v},
     };
     for (Property& property : vertices_->properties)
       for (const auto& [known, role] : kRoleNames)
@@ -295,13 +295,13 @@ class PlyParser {
       if (property.role >= Role::x && property.role <= Role::z && property.type != Type::float32) wide_ = true;
       note_unused(property.role == Role::none, property, unused, unused_count);
     }
-    if (unused_count > 0)
-      warnings_.push_back({{name_, 0, {}}, "vertex properties not used: " + unused, unused_count});
+    if (unused_count > 0) warnings_.push_back({{name_, 0, {}}, "vertex properties not used: " + unused, unused_count});
 
     bool found = false;
     for (std::size_t i = 0; i < faces_->properties.size(); ++i) {
       const Property& property = faces_->properties[i];
-      if (found || !property.is_list || (property.name != "vertex_indices" && property.name != "vertex_index")) continue;
+      if (found || !property.is_list || (property.name != "vertex_indices" && property.name != "vertex_index"))
+        continue;
       faces_->indices = i;
       found = true;
     }
@@ -392,8 +392,8 @@ class PlyParser {
     std::vector<const char*> starts;
     std::size_t corners = 0;
     // The usual faces, one list and nothing else, have a loop of their own.
-    const bool is_simple = corner_starts && element.properties.size() == 1 &&
-                           element.properties[0].count_type == Type::uint8;
+    const bool is_simple =
+        corner_starts && element.properties.size() == 1 && element.properties[0].count_type == Type::uint8;
     const std::size_t entry = is_simple ? size_of(element.properties[0].type) : 0;
     for (std::size_t item = 0; item < element.count; ++item) {
       if (item % kBlock == 0) {
@@ -493,8 +493,7 @@ class PlyParser {
       const auto store = [&](const Property& property, std::size_t vertex, auto value) {
         if (box && property.role <= Role::z)
           wide[static_cast<std::size_t>(property.role) - 1][vertex - first] = static_cast<double>(value);
-        *target(property.role, vertex) =
-            static_cast<float>(static_cast<double>(value) - shift(property.role));
+        *target(property.role, vertex) = static_cast<float>(static_cast<double>(value) - shift(property.role));
       };
       if (starts.empty()) {
         std::size_t offset = 0;
@@ -520,13 +519,12 @@ class PlyParser {
         for (std::size_t vertex = first; vertex < last; ++vertex)
           for (const Property& property : element.properties) {
             if (property.is_list) {
-              p += size_of(property.count_type) + static_cast<std::size_t>(load_index(property.count_type, p, swap())) *
-                                                      size_of(property.type);
+              p += size_of(property.count_type) +
+                   static_cast<std::size_t>(load_index(property.count_type, p, swap())) * size_of(property.type);
               continue;
             }
             if (property.role != Role::none)
-              with_type(property.type,
-                        [&](auto zero) { store(property, vertex, load<decltype(zero)>(p, swap())); });
+              with_type(property.type, [&](auto zero) { store(property, vertex, load<decltype(zero)>(p, swap())); });
             p += size_of(property.type);
           }
       }
@@ -596,8 +594,8 @@ class PlyParser {
   struct Chunk {
     const char* begin;
     const char* end;
-    std::size_t lines = 0;         // that are not blank
-    std::size_t first_line = 0;    // what stands before
+    std::size_t lines = 0;       // that are not blank
+    std::size_t first_line = 0;  // what stands before
     std::size_t corners = 0;
     std::size_t first_corner = 0;
     bool all_triangles = true;
@@ -732,8 +730,9 @@ class PlyParser {
     mesh_.origin = mesh_origin(box);
     if (mesh_.origin != Vec3d(0, 0, 0)) parse_all(true);
     by_lines_ = true;
-    if (lines > items) warnings_.push_back({{name_, 0, {}}, "lines after the last element dropped",
-                                            static_cast<std::int64_t>(lines - items)});
+    if (lines > items)
+      warnings_.push_back(
+          {{name_, 0, {}}, "lines after the last element dropped", static_cast<std::int64_t>(lines - items)});
     return true;
   }
 
@@ -816,9 +815,12 @@ class PlyParser {
         if (element.properties[i].is_list) {
           const char* const after = scan_count(p, end, words);
           if (!after || words < 0)
-            fail_at(p, p == end ? "the data end before this element" : in_quotes(word_at(p, end)) + " is not a list's count",
-                    element, item);
-          if (words > end - after) fail_at(p, "the data end inside this list of " + std::to_string(words), element, item);
+            fail_at(
+                p,
+                p == end ? "the data end before this element" : in_quotes(word_at(p, end)) + " is not a list's count",
+                element, item);
+          if (words > end - after)
+            fail_at(p, "the data end inside this list of " + std::to_string(words), element, item);
           if (i == element.indices) indices = words;
           p = after;
         }
@@ -866,7 +868,8 @@ class PlyParser {
       mesh_.origin = mesh_origin(box);
       if (mesh_.origin == Vec3d(0, 0, 0)) break;
     }
-    warnings_.push_back({{name_, header_lines_ + 1, {}}, "the file does not hold one element a line: read in sequence"});
+    warnings_.push_back(
+        {{name_, header_lines_ + 1, {}}, "the file does not hold one element a line: read in sequence"});
     const char* const rest = skip_spaces(after, end);
     if (rest != end)
       warnings_.push_back({{name_, line_number(bytes_, rest, newline_), {}}, "text after the last element dropped"});
@@ -877,7 +880,8 @@ class PlyParser {
   void warn_skipped() {
     for (const Element& element : elements_)
       if (element.use == Use::skipped && element.count > 0)
-        warnings_.push_back({{name_, 0, {}}, "elements " + in_quotes(element.name) + " skipped",
+        warnings_.push_back({{name_, 0, {}},
+                             "elements " + in_quotes(element.name) + " skipped",
                              static_cast<std::int64_t>(element.count)});
   }
 

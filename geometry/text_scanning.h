@@ -32,7 +32,8 @@ inline constexpr double kExactPowersOfTen[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5
                                                1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 /// Reads a decimal number at `begin` (no blanks before it) and returns where it ends, or nullptr if there is none.
-/// Correctly rounded. Out of range: infinity or zero, with the sign. Accepts a leading plus, "inf" and "nan" in any case.
+/// Correctly rounded. Out of range: infinity or zero, with the sign. Accepts a leading plus, "inf" and "nan" in any
+/// case.
 inline const char* scan_double(const char* begin, const char* end, double& value) {
   const char* p = begin;
   const bool negative = p != end && *p == '-';

@@ -94,7 +94,8 @@ class FaceCutter {
     for (std::size_t i = 0; i < size; ++i) {
       const Vec3d p = Vec3d(positions[corners[i]]) - first;
       const auto place = static_cast<std::uint32_t>(i), count = static_cast<std::uint32_t>(size);
-      nodes_[i] = {p[u], p[v], place == 0 ? count - 1 : place - 1, place + 1 == count ? 0 : place + 1, false, false, false};
+      nodes_[i] = {p[u],  p[v], place == 0 ? count - 1 : place - 1, place + 1 == count ? 0 : place + 1, false,
+                   false, false};
       low_ = {std::min(low_.x, p[u]), std::min(low_.y, p[v])};
       high_ = {std::max(high_.x, p[u]), std::max(high_.y, p[v])};
     }
@@ -216,7 +217,7 @@ class FaceCutter {
       if (waiting_.empty()) {
         if (stage == Stage::anything) break;
         ++rounds;
-        stage = rounds > kMaxRounds ? Stage::anything
+        stage = rounds > kMaxRounds                  ? Stage::anything
                 : progress && stage != Stage::proper ? Stage::proper
                                                      : static_cast<Stage>(static_cast<int>(stage) + 1);
         progress = false;

@@ -53,9 +53,8 @@ Vec3f unit_face_normal(const PolygonMesh& mesh, std::size_t begin, std::size_t e
 
 template <class Function>
 void for_each_block(std::size_t count, const Function& function) {
-  tbb::parallel_for(std::size_t(0), (count + kBlock - 1) / kBlock, [&](std::size_t block) {
-    function(block, block * kBlock, std::min(count, (block + 1) * kBlock));
-  });
+  tbb::parallel_for(std::size_t(0), (count + kBlock - 1) / kBlock,
+                    [&](std::size_t block) { function(block, block * kBlock, std::min(count, (block + 1) * kBlock)); });
 }
 
 /// The corners at one vertex, and how they fall into groups that share a normal.
@@ -74,7 +73,8 @@ class VertexFan {
       const std::uint32_t after = mesh_.corners[*c + 1 == last ? first : *c + 1];
       const Vec3f& normal = face_normals_[face];
       const Vec3d vertex(mesh_.positions[mesh_.corners[*c]]);
-      const Vec3d to_after = Vec3d(mesh_.positions[after]) - vertex, to_before = Vec3d(mesh_.positions[before]) - vertex;
+      const Vec3d to_after = Vec3d(mesh_.positions[after]) - vertex,
+                  to_before = Vec3d(mesh_.positions[before]) - vertex;
       const Vec3d cross = to_after.cross(to_before);
       double angle = std::atan2(cross.length(), to_after.dot(to_before));
       // The inner angle of a reflex corner is beyond pi: its edges turn against the face's normal.

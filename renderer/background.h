@@ -5,6 +5,7 @@
 
 #include "geometry/vec.h"
 #include "renderer/color.h"
+#include "renderer/features.h"
 #include "renderer/scene_description.h"
 
 namespace raytree {
@@ -26,7 +27,7 @@ struct BackgroundLight {
 
   /// Radiance along a unit direction; world axes, Y up.
   Rgb along(const Vec3f& direction) const {
-    if (!varies) return horizon;
+    if (!kFeatures.gradient_background || !varies) return horizon;
     const float height = std::min(1.0f, std::max(-1.0f, direction.y));
     return height >= 0 ? mix(horizon, top, height) : mix(horizon, bottom, -height);
   }

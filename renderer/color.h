@@ -17,11 +17,11 @@ struct Rgb {
   constexpr Rgb& operator*=(Rgb o) { return r *= o.r, g *= o.g, b *= o.b, *this; }
   constexpr Rgb& operator*=(float s) { return r *= s, g *= s, b *= s, *this; }
 
-  friend constexpr Rgb operator+(Rgb a, Rgb b) { return a += b; }
-  friend constexpr Rgb operator-(Rgb a, Rgb b) { return {a.r - b.r, a.g - b.g, a.b - b.b}; }
-  friend constexpr Rgb operator*(Rgb a, Rgb b) { return a *= b; }
-  friend constexpr Rgb operator*(Rgb a, float s) { return a *= s; }
-  friend constexpr Rgb operator*(float s, Rgb a) { return a *= s; }
+  friend constexpr Rgb operator+(Rgb left, Rgb right) { return left += right; }
+  friend constexpr Rgb operator-(Rgb left, Rgb right) { return {left.r - right.r, left.g - right.g, left.b - right.b}; }
+  friend constexpr Rgb operator*(Rgb left, Rgb right) { return left *= right; }
+  friend constexpr Rgb operator*(Rgb color, float factor) { return color *= factor; }
+  friend constexpr Rgb operator*(float factor, Rgb color) { return color *= factor; }
   friend constexpr bool operator==(const Rgb&, const Rgb&) = default;
 };
 

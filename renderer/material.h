@@ -6,6 +6,7 @@
 
 #include "geometry/surface.h"
 #include "renderer/color.h"
+#include "renderer/features.h"
 #include "renderer/scene_description.h"
 
 namespace raytree {
@@ -19,7 +20,7 @@ struct Pattern {
   double corner[2] = {0, 0};  ///< scene space: where a corner of an even square lies
   double squares_per_unit = 1;
 
-  Rgb at(const SurfacePoint& point) const { return varies ? square_at(point) : even; }
+  Rgb at(const SurfacePoint& point) const { return kFeatures.patterns && varies ? square_at(point) : even; }
   Rgb largest() const { return max(even, odd); }
 
  private:

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "renderer/features.h"
 #include "renderer/shading.h"
@@ -56,12 +57,13 @@ struct TileTracer::State {
         shadow_samples(kBatchSize),
         shadow_light(kBatchSize),
         eye_rays(kBatchSize),
+        hit_rays(kBatchSize),
+        points(kBatchSize),
         radiance(kBatchSize),
         truncation(kBatchSize),
         ray_counts(kBatchSize),
         pixel_of_sample(kBatchSize),
         center_of_pixel(kBatchSize) {
-    points.reserve(kBatchSize);
     pending.reserve(4 * kBatchSize);
     const ChannelSet& channels = options.channels;
     counts_rays = channels.has(ChannelGroup::ray_count);
@@ -87,6 +89,8 @@ struct TileTracer::State {
   bool finish_chunk();
   void trace_batch(Coherence coherence, bool eye);
   void collect_hits(bool eye);
+  void prefetch_triangles(const ShapeSet& shapes) const;
+  std::span<const BatchPoint> batch_points() const { return {points.data(), point_count}; }
   void add_lights();
   void spawn();
   void spawn_child(const BatchPoint& point, const Vec3f& direction, const Rgb& weight, float allowance, bool refracted);
@@ -108,10 +112,13 @@ struct TileTracer::State {
 
   std::vector<PendingRay> eye_rays;      ///< contexts of the chunk's eye rays
   const PendingRay* contexts = nullptr;  ///< [rays.size] of the batch under way; read before children are spawned
-  std::vector<BatchPoint> points;        ///< hits of the batch under way
-  std::vector<PendingRay> pending;       ///< the newest rays are traced first
+  std::vector<std::uint32_t> hit_rays;   ///< [point_count] index in the batch of each hit
+  std::size_t point_count = 0;
+  std::vector<BatchPoint> points;   ///< hits of the batch under way
+  std::vector<PendingRay> pending;  ///< the newest rays are traced first
 
   // The chunk of samples under way.
+  std::vector<int> pixel_of;  ///< [column or row of samples in the tile] -> of pixels
   std::size_t chunk_size = 0;
   std::vector<Rgb> radiance, truncation;
   std::vector<std::uint32_t> ray_counts;
@@ -140,12 +147,14 @@ bool TileTracer::State::trace_tile(int x0, int y0) {
   const int width = std::min(kTileSize, scene.description.image.width - x0) * grid;
   const int height = std::min(kTileSize, scene.description.image.height - y0) * grid;
   const float spacing = 1.0f / static_cast<float>(grid);
+  pixel_of.resize(static_cast<std::size_t>(kTileSize) * grid);
+  for (std::size_t i = 0; i < pixel_of.size(); ++i) pixel_of[i] = static_cast<int>(i) / grid;
   for (int block_y = 0; block_y < height; block_y += kBlockHeight)
     for (int block_x = 0; block_x < width; block_x += kBlockWidth) {
       if (chunk_size + kBlockWidth * kBlockHeight > kBatchSize && !finish_chunk()) return false;
       for (int y = block_y; y < std::min(block_y + kBlockHeight, height); ++y)
         for (int x = block_x; x < std::min(block_x + kBlockWidth, width); ++x) {
-          const int pixel_x = x / grid, pixel_y = y / grid;
+          const int pixel_x = pixel_of[x], pixel_y = pixel_of[y];
           const bool center = x - pixel_x * grid == grid / 2 && y - pixel_y * grid == grid / 2;
           add_eye_sample(static_cast<float>(x0) + (static_cast<float>(x) + 0.5f) * spacing,
                          static_cast<float>(y0) + (static_cast<float>(y) + 0.5f) * spacing,
@@ -175,6 +184,7 @@ bool TileTracer::State::finish_chunk() {
   rays.size = chunk_size;
   statistics.rays[static_cast<int>(RayKind::primary)] += chunk_size;
   statistics.samples += chunk_size;
+  statistics.deepest_level = std::max(statistics.deepest_level, 1);
   contexts = eye_rays.data();
   trace_batch(Coherence::coherent, true);
   while (!pending.empty()) {
@@ -184,7 +194,7 @@ bool TileTracer::State::finish_chunk() {
     for (std::size_t i = 0; i < count; ++i) {
       const PendingRay& ray = contexts[i];
       rays.set(i, ray.origin, ray.direction, std::numeric_limits<float>::infinity());
-      if (counts_rays) ++ray_counts[ray.sample];
+      if (kFeatures.ray_count_channel && counts_rays) ++ray_counts[ray.sample];
     }
     rays.size = count;
     trace_batch(Coherence::incoherent, false);
@@ -196,11 +206,11 @@ bool TileTracer::State::finish_chunk() {
     } else {
       ++statistics.not_finite_samples;
     }
-    if (records_truncation) {
+    if (kFeatures.truncation_channel && records_truncation) {
       ColorSum& sum = truncation_sum[pixel];
       sum.r += truncation[i].r, sum.g += truncation[i].g, sum.b += truncation[i].b;
     }
-    if (counts_rays) ray_count_sum[pixel] += ray_counts[i];
+    if (kFeatures.ray_count_channel && counts_rays) ray_count_sum[pixel] += ray_counts[i];
   }
   chunk_size = 0;
   return !(options.stop != nullptr && options.stop->load(std::memory_order_relaxed));
@@ -222,34 +232,66 @@ void TileTracer::State::trace_batch(Coherence coherence, bool eye) {
 
 void TileTracer::State::collect_hits(bool eye) {
   const ShapeSet& shapes = *scene.shapes;
-  points.clear();
+  point_count = 0;
   for (std::size_t i = 0; i < rays.size; ++i) {
-    const PendingRay& ray = contexts[i];
-    if (hits.geometry[i] == kNoGeometry) {
-      // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
-      const Vec3f poison = (ray.origin + ray.direction) * 0.0f;
-      radiance[ray.sample] += ray.weight * scene.background.along(ray.direction) + Rgb(poison.x + poison.y + poison.z);
+    if (hits.geometry[i] != kNoGeometry) {
+      hit_rays[point_count++] = static_cast<std::uint32_t>(i);
       continue;
     }
+    const PendingRay& ray = contexts[i];
+    // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
+    const Vec3f poison = (ray.origin + ray.direction) * 0.0f;
+    radiance[ray.sample] += ray.weight * scene.background.along(ray.direction) + Rgb(poison.x + poison.y + poison.z);
+  }
+  prefetch_triangles(shapes);
+
+  for (std::size_t p = 0; p < point_count; ++p) {
+    const std::size_t i = hit_rays[p];
+    const PendingRay& ray = contexts[i];
     const Hit hit = hits[i];
-    const SurfacePoint surface = surface_at(shapes, ray.origin, ray.direction, hit, wants_texture);
     const ShapeId shape = shapes.shape_of(hit.geometry, hit.primitive);
     const Material& material = scene.materials[scene.shape_materials[shape]];
-    BatchPoint& point = points.emplace_back(
-        BatchPoint{shading_point(surface, ray.direction, material), ray.weight, ray.allowance, ray.sample, ray.level});
+    BatchPoint& point = points[p];
+    point.shading =
+        shading_point(surface_at(shapes, ray.origin, ray.direction, hit, wants_texture), ray.direction, material);
+    point.weight = ray.weight;
+    point.allowance = ray.allowance;
+    point.sample = ray.sample;
+    point.level = ray.level;
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && !eye)
-      point.weight *= segment_attenuation(static_cast<float>(settings.distance_attenuation), surface.distance);
+      point.weight *=
+          segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);
     radiance[ray.sample] +=
         point.weight * scene.ambient *
         (material.ambient_as_diffuse ? point.shading.diffuse : material.ambient.at(point.shading.surface));
-    if (eye && records_first_hit) record_first_hit(point, hit, shape);
+    if (kFeatures.first_hit_channels && eye && records_first_hit) record_first_hit(point, hit, shape);
   }
+}
+
+/// The vertices of the batch's triangles lie anywhere in memory: all are asked for before the first is used.
+void TileTracer::State::prefetch_triangles(const ShapeSet& shapes) const {
+  if (shapes.meshes.empty()) return;
+  const auto for_each_triangle = [&](auto&& function) {
+    for (std::size_t p = 0; p < point_count; ++p) {
+      const std::size_t i = hit_rays[p];
+      if (hits.geometry[i] >= kFirstMeshGeometry)
+        function(shapes.meshes[hits.geometry[i] - kFirstMeshGeometry].mesh, std::size_t(hits.primitive[i]) * 3);
+    }
+  };
+  for_each_triangle([](const TriangleMesh& mesh, std::size_t corner) { __builtin_prefetch(&mesh.corners[corner]); });
+  for_each_triangle([](const TriangleMesh& mesh, std::size_t corner) {
+    const bool normals = !mesh.normals.empty() && mesh.normal_corners.empty();
+    for (std::size_t c = corner; c < corner + 3; ++c) {
+      __builtin_prefetch(&mesh.positions[mesh.corners[c]]);
+      if (normals) __builtin_prefetch(&mesh.normals[mesh.corners[c]]);
+    }
+  });
 }
 
 void TileTracer::State::add_lights() {
   for (const Light& light : scene.lights) {
     std::size_t count = 0;
-    for (const BatchPoint& point : points) {
+    for (const BatchPoint& point : batch_points()) {
       const Material& material = *point.shading.material;
       if (!material.has_diffuse && !material.has_highlight) continue;
       const LocalLight local = local_light(point.shading, light, settings.highlights);
@@ -278,13 +320,13 @@ void TileTracer::State::add_lights() {
     statistics.rays[static_cast<int>(RayKind::shadow)] += count;
     for (std::size_t i = 0; i < count; ++i)
       if (!occluded[i]) radiance[shadow_samples[i]] += shadow_light[i];
-    if (counts_rays)
+    if (kFeatures.ray_count_channel && counts_rays)
       for (std::size_t i = 0; i < count; ++i) ++ray_counts[shadow_samples[i]];
   }
 }
 
 void TileTracer::State::spawn() {
-  for (const BatchPoint& point : points) {
+  for (const BatchPoint& point : batch_points()) {
     const Material& material = *point.shading.material;
     if (!material.has_reflection && !material.has_transmission) continue;
     const Branches children = branches(point.shading);
@@ -315,7 +357,7 @@ void TileTracer::State::spawn() {
     for (int i = 0; i < 2; ++i) {
       if (!alive[i]) continue;
       if (cut[i]) {
-        truncation[point.sample] += bounds[i];
+        if (kFeatures.truncation_channel) truncation[point.sample] += bounds[i];
         ++statistics.branches_cut;
       } else {
         spawn_child(point, i == 0 ? children.reflected : children.refracted, weights[i], shares[i], i == 1);

@@ -315,6 +315,10 @@ void visit_fields(Visitor& visit, T& material) {
               .text = "Of the inside over the outside; the geometric normal points outside",
               .range = kPositive},
         material.index_of_refraction);
+  visit(Field{.key = "fresnel",
+              .text = "Weights k_s F and k_t (1 - F) by Fresnel's formulas in place of constant k_s and k_t",
+              .absent = "as render.fresnel"},
+        material.fresnel);
 }
 
 template <class Visitor, Is<FaceGroup> T>

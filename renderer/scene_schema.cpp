@@ -9,6 +9,14 @@ namespace {
 
 constexpr Range kIndexRange{0, 4294967295.0};
 
+/// With a capital, unless a symbol like k_d heads it, and a period.
+std::string sentence(std::string_view text) {
+  std::string out(text);
+  if (!out.empty() && out[0] >= 'a' && out[0] <= 'z' && (out.size() < 2 || out[1] != '_'))
+    out[0] = static_cast<char>(out[0] - 'a' + 'A');
+  return out + ".";
+}
+
 // --- JSON Schema --------------------------------------------------------------------------------------------
 
 class SchemaWriter {
@@ -121,13 +129,6 @@ class SchemaWriter {
     void operator()(const Field& field, const auto& member) { properties(field, member); }
     void tagged(const Field&, const auto&) {}
   };
-
-  static std::string sentence(std::string_view text) {
-    std::string out(text);
-    if (!out.empty() && out[0] >= 'a' && out[0] <= 'z' && (out.size() < 2 || out[1] != '_'))
-      out[0] = static_cast<char>(out[0] - 'a' + 'A');
-    return out + ".";
-  }
 
   void describe(const Field& field) {
     std::string text = sentence(field.text);
@@ -375,7 +376,7 @@ class ReferenceWriter {
   void alternatives(const std::string& where, const Variant&) {
     for_each_alternative<Variant>([&]<class T>(std::in_place_type_t<T>) {
       const std::string name(Alternative<T>::name);
-      table(where + ", type \"" + name + "\"", std::string(Alternative<T>::text) + ".", T{});
+      table(where + ", type \"" + name + "\"", sentence(Alternative<T>::text), T{});
     });
   }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "geometry/surface.h"
+#include "renderer/features.h"
 #include "renderer/light.h"
 #include "renderer/material.h"
 #include "renderer/optics.h"
@@ -16,11 +17,11 @@ namespace raytree {
 /// A hit ready for shading. Normals are turned to the side that the ray comes from; side is decided by the geometric
 /// normal.
 struct ShadingPoint {
-  SurfacePoint surface;      ///< normals turned to the ray's side
-  Vec3f direction;           ///< of the ray, unit
-  const Material* material;  ///< never null
-  Rgb diffuse;               ///< k_d here
-  bool leaving = false;      ///< the ray hit the surface from behind: it is leaving the inside
+  SurfacePoint surface;                ///< normals turned to the ray's side
+  Vec3f direction;                     ///< of the ray, unit
+  const Material* material = nullptr;  ///< set by shading_point()
+  Rgb diffuse;                         ///< k_d here
+  bool leaving = false;                ///< the ray hit the surface from behind: it is leaving the inside
 };
 
 inline ShadingPoint shading_point(const SurfacePoint& surface, const Vec3f& direction, const Material& material) {
@@ -54,7 +55,7 @@ inline LocalLight local_light(const ShadingPoint& point, const Light& light, Hig
   result.diffuse = light.color * point.diffuse * std::min(cosine, 1.0f);
   if (material.has_highlight) {
     float base;
-    if (form == HighlightForm::reflected) {
+    if (!kFeatures.halfway_highlights || form == HighlightForm::reflected) {
       const Vec3f mirrored = normal * (2 * cosine) - result.direction;
       base = -mirrored.dot(point.direction);
     } else {
@@ -87,19 +88,20 @@ inline Branches branches(const ShadingPoint& point) {
   }
   Branches result;
   float reflectance = 1;
-  if (material.has_transmission || material.fresnel) {
+  const bool fresnel = kFeatures.fresnel && material.fresnel;
+  if (material.has_transmission || fresnel) {
     const float relative_index = point.leaving ? material.inverse_index : material.index;
     const float eta = point.leaving ? material.index : material.inverse_index;
-    if (material.fresnel) reflectance = fresnel_reflectance(std::min(cosine, 1.0f), relative_index);
+    if (fresnel) reflectance = fresnel_reflectance(std::min(cosine, 1.0f), relative_index);
     if (material.has_transmission)
       if (const auto refracted = refracted_direction(point.direction, normal, eta)) {
         result.refracted = kept_on_side(*refracted, -side);
-        result.refracted_weight = material.fresnel ? material.transmission * (1 - reflectance) : material.transmission;
+        result.refracted_weight = fresnel ? material.transmission * (1 - reflectance) : material.transmission;
       }
   }
   if (material.has_reflection) {
     result.reflected = kept_on_side(reflected_direction(point.direction, normal), side);
-    result.reflected_weight = material.fresnel ? material.reflection * reflectance : material.reflection;
+    result.reflected_weight = fresnel ? material.reflection * reflectance : material.reflection;
   }
   return result;
 }

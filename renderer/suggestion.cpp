@@ -26,6 +26,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+/// Whether three letters or more of `word` begin `name`.
+bool is_beginning(std::string_view word, std::string_view name) {
+  return word.size() >= 3 && word.size() < name.size() &&
+         std::equal(word.begin(), word.end(), name.begin(), [](char a, char b) { return lower(a) == lower(b); });
+}
+
 }  // namespace
 
 std::optional<std::string> closest_name(std::string_view word, const std::vector<std::string>& names) {
@@ -35,7 +41,8 @@ std::optional<std::string> closest_name(std::string_view word, const std::vector
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& name : names) {
     if (name.size() > kLongestWord) continue;
-    const std::size_t distance = edit_distance(word, name);
+    // What was typed may also be the beginning of a longer name.
+    const std::size_t distance = is_beginning(word, name) ? 1 : edit_distance(word, name);
     // All letters replaced is another word.
     if (distance < best_distance && distance < std::max(word.size(), name.size())) {
       best = name;

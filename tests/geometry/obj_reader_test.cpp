@@ -74,18 +74,33 @@ TEST(ObjReader, KeepsPolygonsAndTheirSizes) {
 
 TEST(ObjReader, AcceptsLineEndsContinuationsAndBlanks) {
   const PolygonMesh reference = read(kThree + "f 1 2 3\n");
-  for (const std::string text :
-       {"v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3",
-        "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "  v\t0  0 0 \n\n v 1 0 \\\n0\nv 0 1 0\nf 1 \\\r\n 2\\\n\\\n 3",
-        "v 0 0 0\nv 1 0 0\n# a path C:\\folder\\\nv 0 1 0\nf 1 2 3 \\"})
+  for (const std::string text : {"v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3",
+                                 "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3",
+                                 "  v\t0  0 0 \n\n v 1 0 \\\n0\nv 0 1 0\nf 1 \\\r\n 2\\\n\\\n 3",
+                                 "v 0 0 0\nv 1 0 0\n# a path C:\\folder\\\nv 0 1 0\nf 1 2 3 \\"})
     EXPECT_TRUE(same_mesh(read(text), reference)) << text;
 }
 
 TEST(ObjReader, NumbersInEveryNotationAreCorrectlyRounded) {
-  const std::vector<std::string> numbers = {"+1",      "-.5",    "2.",      "1e2",          "+1E+2",
-                                            "1.5e-3",  "0.1",    "1e-320",  "123456789012", "9007199254740993",
-                                            "1e22",    "1e23",   "4.35",    "1e-22",        "0.30000000000000004",
-                                            "00001.0", "1e0005", "1.7e308", "-0"};
+  const std::vector<std::string> numbers = {"+1",
+                                            "-.5",
+                                            "2.",
+                                            "1e2",
+                                            "+1E+2",
+                                            "1.5e-3",
+                                            "0.1",
+                                            "1e-320",
+                                            "123456789012",
+                                            "9007199254740993",
+                                            "1e22",
+                                            "1e23",
+                                            "4.35",
+                                            "1e-22",
+                                            "0.30000000000000004",
+                                            "00001.0",
+                                            "1e0005",
+                                            "1.7e308",
+                                            "-0"};
   for (const std::string& number : numbers) {
     double value = 0;
     const char* const end = number.data() + number.size();
@@ -109,8 +124,9 @@ TEST(ObjReader, NumbersInEveryNotationAreCorrectlyRounded) {
 }
 
 TEST(ObjReader, MillimetresSurviveAMillionMetresFromTheOrigin) {
-  const PolygonMesh mesh = read("v 1000000.001 2000000.002 -3000000.003\nv 1000001 2000000 -3000000\n"
-                                "v 1000000 2000001 -3000000\nf 1 2 3\n");
+  const PolygonMesh mesh = read(
+      "v 1000000.001 2000000.002 -3000000.003\nv 1000001 2000000 -3000000\n"
+      "v 1000000 2000001 -3000000\nf 1 2 3\n");
   EXPECT_NE(mesh.origin, Vec3d(0, 0, 0));
   const Vec3d first = Vec3d(mesh.positions[0]) + mesh.origin;
   // Offsets are below 1: float keeps them to 2^-25, double the sum to 2^-32.
@@ -126,8 +142,9 @@ TEST(ObjReader, KeepsTheOriginWhereItGainsNothing) {
 }
 
 TEST(ObjReader, GroupsAreRunsOfFaces) {
-  const PolygonMesh mesh = read(kThree + "g one\nusemtl red paint \nf 1 2 3\nf 1 2 3\no two\nf 1 2 3\ng ghost\n"
-                                         "usemtl blue\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
+  const PolygonMesh mesh = read(kThree +
+                                "g one\nusemtl red paint \nf 1 2 3\nf 1 2 3\no two\nf 1 2 3\ng ghost\n"
+                                "usemtl blue\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
   ASSERT_EQ(mesh.groups.size(), 3u);
   EXPECT_EQ(mesh.groups[0].name, "one");
   EXPECT_EQ(mesh.groups[0].material, "red paint");
@@ -151,10 +168,8 @@ TEST(ObjReader, GroupsFollowWhenFacesAreDropped) {
 }
 
 TEST(ObjReader, ErrorsNameFileAndLine) {
-  EXPECT_EQ(error_of(kThree + "f 1 2 9\n"),
-            "test.obj:4: the face refers to vertex 9; there are 3 in the file");
-  EXPECT_EQ(error_of(kThree + "f 1 2 -4\n"),
-            "test.obj:4: the face refers to vertex -4; there are 3 before this line");
+  EXPECT_EQ(error_of(kThree + "f 1 2 9\n"), "test.obj:4: the face refers to vertex 9; there are 3 in the file");
+  EXPECT_EQ(error_of(kThree + "f 1 2 -4\n"), "test.obj:4: the face refers to vertex -4; there are 3 before this line");
   EXPECT_EQ(error_of(kThree + "f 0 1 2\n"), "test.obj:4: the face refers to vertex 0; indices begin at 1");
   EXPECT_EQ(error_of("v 1 2\n" + kThree + "f 1 2 3"), "test.obj:1: expected 3 numbers, found 2");
   EXPECT_EQ(error_of("\nv 1 2 x\n"), "test.obj:2: 'x' is not a number");
@@ -179,8 +194,9 @@ TEST(ObjReader, TheFirstErrorInTheFileIsReported) {
 
 TEST(ObjReader, OddButValidFilesLoadWithCountedWarnings) {
   Warnings warnings;
-  const PolygonMesh mesh = read("mtllib a.mtl\n" + kThree + "v nan 0 0\nv 1 1 0 1\ns off\nl 1 2\np 1\nfoo bar\nfoo\n"
-                                "vp 1 2\nf 1 2 3\nf 1 2 4\nf 1 1 2\nf 1 2\nf 1 2 2 3\nf 1 2 1 3\nvn 0 0 1\n",
+  const PolygonMesh mesh = read("mtllib a.mtl\n" + kThree +
+                                    "v nan 0 0\nv 1 1 0 1\ns off\nl 1 2\np 1\nfoo bar\nfoo\n"
+                                    "vp 1 2\nf 1 2 3\nf 1 2 4\nf 1 1 2\nf 1 2\nf 1 2 2 3\nf 1 2 1 3\nvn 0 0 1\n",
                                 &warnings);
   EXPECT_EQ(mesh.face_count(), 2u);
   EXPECT_TRUE(mesh.all_triangles());
@@ -279,9 +295,14 @@ TEST(ObjReader, MalformedFilesOfOthersNeverHarm) { test::read_all_damaged("malfo
 
 TEST(ObjReader, FeatureFilesOfOthersLoad) {
   // No face at all; UTF-16 text; a number that is none ("3.1+e2"); normals that the file does not have.
-  const std::vector<std::string> refused = {"issue-356-leading-spaces-newmtl.obj", "line-prim.obj", "testpoints.obj",
-                                            "testlines.obj", "number_formats.obj", "cube_with_vertexcolors_uni.obj",
-                                            "point_cloud.obj", "smoothing-group-two-squares.obj"};
+  const std::vector<std::string> refused = {"issue-356-leading-spaces-newmtl.obj",
+                                            "line-prim.obj",
+                                            "testpoints.obj",
+                                            "testlines.obj",
+                                            "number_formats.obj",
+                                            "cube_with_vertexcolors_uni.obj",
+                                            "point_cloud.obj",
+                                            "smoothing-group-two-squares.obj"};
   for (const auto& path : test::test_data_files("obj_features")) {
     if (path.extension() != ".obj") continue;
     Warnings warnings;
@@ -295,10 +316,17 @@ TEST(ObjReader, FeatureFilesOfOthersLoad) {
 
 TEST(ObjReader, WellKnownMeshesHaveTheirCounts) {
   const std::vector<std::tuple<std::string, std::size_t, std::size_t, std::size_t>> known = {
-      {"stanford-bunny.obj", 35947, 69451, 3},  {"armadillo.obj", 43243, 86482, 3}, {"suzanne.obj", 507, 500, 4},
-      {"teapot.obj", 3644, 6320, 3},            {"koala.obj", 49999, 99994, 3},     {"nefertiti_lowres.obj", 35002, 70000, 3},
-      {"boot.obj", 19931, 39906, 3},            {"mountain.obj", 25600, 50562, 3},  {"hammer.obj", 30082, 60160, 3},
-      {"goathead.obj", 2763, 5522, 3},          {"penguin.obj", 3362, 6720, 3}};
+      {"stanford-bunny.obj", 35947, 69451, 3},
+      {"armadillo.obj", 43243, 86482, 3},
+      {"suzanne.obj", 507, 500, 4},
+      {"teapot.obj", 3644, 6320, 3},
+      {"koala.obj", 49999, 99994, 3},
+      {"nefertiti_lowres.obj", 35002, 70000, 3},
+      {"boot.obj", 19931, 39906, 3},
+      {"mountain.obj", 25600, 50562, 3},
+      {"hammer.obj", 30082, 60160, 3},
+      {"goathead.obj", 2763, 5522, 3},
+      {"penguin.obj", 3362, 6720, 3}};
   std::size_t found = 0;
   for (const auto& path : test::test_data_files("meshes"))
     for (const auto& [name, vertices, faces, largest] : known)

@@ -80,7 +80,7 @@ void append_typed(std::string& bytes, const std::string& type, double value, con
 }
 
 const std::vector<std::string> kFormats = {"ascii", "binary_little_endian", "binary_big_endian"};
-const std::vector<std::string> kTypes = {"char",  "uchar",  "short",  "ushort", "int",   "uint",  "float",   "double",
+const std::vector<std::string> kTypes = {"char", "uchar", "short", "ushort", "int",   "uint",   "float",   "double",
                                          "int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
 
 /// A prism roof: five vertices, a triangle, a quad and a pentagon; with elements and properties that nobody knows.
@@ -168,19 +168,19 @@ TEST(PlyReader, SaysWhatItSkips) {
 std::string triangle(const std::string& properties, const std::vector<std::string>& vertices,
                      const std::string& rest = "3 0 1 2\n") {
   std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertices.size()) +
-                     "\nproperty float x\nproperty float y\nproperty float z\n" + properties +
-                     "element face " + std::to_string(std::count(rest.begin(), rest.end(), '\n')) +
+                     "\nproperty float x\nproperty float y\nproperty float z\n" + properties + "element face " +
+                     std::to_string(std::count(rest.begin(), rest.end(), '\n')) +
                      "\nproperty list uchar int vertex_indices\nend_header\n";
   for (const std::string& v : vertices) text += v + "\n";
   return text + rest;
 }
 
 TEST(PlyReader, ReadsNormalsAndTextureCoordinates) {
-  for (const auto& [u, v] : std::vector<std::pair<std::string, std::string>>{
-           {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}}) {
-    const PolygonMesh mesh = read(triangle("property float nx\nproperty float ny\nproperty float nz\nproperty float " +
-                                               u + "\nproperty float " + v + "\n",
-                                           {"0 0 0 0 0 1 .25 .5", "1 0 0 0 1 0 1 0", "0 1 0 1 0 0 0 1"}));
+  for (const auto& [u, v] :
+       std::vector<std::pair<std::string, std::string>>{{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}}) {
+    const PolygonMesh mesh = read(triangle(
+        "property float nx\nproperty float ny\nproperty float nz\nproperty float " + u + "\nproperty float " + v + "\n",
+        {"0 0 0 0 0 1 .25 .5", "1 0 0 0 1 0 1 0", "0 1 0 1 0 0 0 1"}));
     ASSERT_EQ(mesh.normals.size(), 3u);
     EXPECT_EQ(mesh.normals[1], Vec3f(0, 1, 0));
     EXPECT_EQ(mesh.texture_coordinates[0], Vec2f(0.25f, 0.5f));
@@ -200,8 +200,9 @@ TEST(PlyReader, LineEndsOfEveryKind) {
   }
   EXPECT_TRUE(same_mesh(read(text.substr(0, text.size() - 1)), reference));
   // Binary data that begin with a line feed; and a header whose last line alone ends with a carriage return.
-  std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n"
-                       "property uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header";
+  std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n"
+      "property uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header";
   const std::string body("\n\0\0\0\1\0\0\0\1\3\0\1\2", 13);
   EXPECT_EQ(read(header + "\n" + body).positions[0], Vec3f(10, 0, 0));
   EXPECT_EQ(read(header + "\r\n" + body).positions[0], Vec3f(10, 0, 0));
@@ -316,8 +317,8 @@ TEST(PlyReader, SizesAreCheckedBeforeMemoryIsTaken) {
 
 TEST(PlyReader, OddValuesAreDroppedWithACount) {
   Warnings warnings;
-  const PolygonMesh mesh = read(
-      triangle("", {"0 0 0", "1 0 0", "0 1 0", "nan 0 inf"}, "3 0 1 2\n3 1 2 3\n4 0 1 1 2\n3 0 0 2\n"), &warnings);
+  const PolygonMesh mesh =
+      read(triangle("", {"0 0 0", "1 0 0", "0 1 0", "nan 0 inf"}, "3 0 1 2\n3 1 2 3\n4 0 1 1 2\n3 0 0 2\n"), &warnings);
   EXPECT_EQ(mesh.corners, (Buffer<std::uint32_t>{0, 1, 2, 0, 1, 2}));
   ASSERT_EQ(warnings.size(), 4u);
   EXPECT_EQ(warnings[0].where.line, 16);  // the repeated corner
@@ -401,13 +402,22 @@ TEST(PlyReader, DamagedFilesNeverHarm) {
 TEST(PlyReader, MalformedFilesOfOthersNeverHarm) { test::read_all_damaged("malformed/ply", ".ply"); }
 
 TEST(PlyReader, FeatureFilesOfOthersLoad) {
-  const std::vector<std::pair<std::string, std::size_t>> counts = {
-      {"icosahedron.ply", 20},        {"icosahedron_ascii.ply", 20},          {"sofa.ply", 24104},
-      {"platonic_shelf.ply", 50},     {"platonic_shelf_ascii.ply", 50},       {"platonic_shelf_big_endian.ply", 50},
-      {"Wuson.ply", 3732},            {"cube.ply", 6},                        {"cube_binary.ply", 12},
-      {"cube_uv.ply", 6},             {"cube_binary_starts_with_nl.ply", 6},  {"cube_binary_header_with_RN_newline.ply", 12},
-      {"cube_att.ply", 12},           {"cube_quads.ply", 6},                  {"cube_blender_uv.ply", 6},
-      {"bun_zipper.ply", 69451}};
+  const std::vector<std::pair<std::string, std::size_t>> counts = {{"icosahedron.ply", 20},
+                                                                   {"icosahedron_ascii.ply", 20},
+                                                                   {"sofa.ply", 24104},
+                                                                   {"platonic_shelf.ply", 50},
+                                                                   {"platonic_shelf_ascii.ply", 50},
+                                                                   {"platonic_shelf_big_endian.ply", 50},
+                                                                   {"Wuson.ply", 3732},
+                                                                   {"cube.ply", 6},
+                                                                   {"cube_binary.ply", 12},
+                                                                   {"cube_uv.ply", 6},
+                                                                   {"cube_binary_starts_with_nl.ply", 6},
+                                                                   {"cube_binary_header_with_RN_newline.ply", 12},
+                                                                   {"cube_att.ply", 12},
+                                                                   {"cube_quads.ply", 6},
+                                                                   {"cube_blender_uv.ply", 6},
+                                                                   {"bun_zipper.ply", 69451}};
   std::size_t found = 0;
   bool any = false;
   PolygonMesh shelf;

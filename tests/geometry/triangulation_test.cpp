@@ -1,5 +1,5 @@
-// Triangulation: the triangles cover the polygon exactly (area, no turned triangle, boundary kept), for convex, concave,
-// tilted, large and degenerate polygons; the way back to faces and corners.
+// Triangulation: the triangles cover the polygon exactly (area, no turned triangle, boundary kept), for convex,
+// concave, tilted, large and degenerate polygons; the way back to faces and corners.
 #include "geometry/triangulation.h"
 
 #include <gtest/gtest.h>
@@ -116,7 +116,8 @@ TEST(Triangulation, ConvexQuadsTakeTheShorterDiagonal) {
 TEST(Triangulation, CollinearCornersMakeNoEmptyTriangleWhereOneCanDoWithout) {
   for (int turn = 0; turn < 8; ++turn) {
     std::vector<Vec3f> quad = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 2, 0}};
-    std::vector<Vec3f> square = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
+    std::vector<Vec3f> square = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0},
+                                 {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
     std::rotate(quad.begin(), quad.begin() + turn % 4, quad.end());
     std::rotate(square.begin(), square.begin() + turn, square.end());
     for (const auto& points : {quad, square}) {
@@ -209,14 +210,16 @@ TEST(Triangulation, PolygonsThatCrossThemselvesAreCountedAndDegenerateOnesHarmle
   // A pentagram, a bow tie of unequal wings, an eight of six corners.
   std::vector<Vec3f> pentagram;
   for (int i = 0; i < 5; ++i)
-    pentagram.push_back(Vec3f(Vec3d(std::cos(i * 4 * std::numbers::pi / 5), std::sin(i * 4 * std::numbers::pi / 5), 0)));
+    pentagram.push_back(
+        Vec3f(Vec3d(std::cos(i * 4 * std::numbers::pi / 5), std::sin(i * 4 * std::numbers::pi / 5), 0)));
   EXPECT_EQ(cut(polygon(pentagram), &bad).triangle_count(), 3u);
   EXPECT_EQ(bad, 1);
   for (const float far : {2.0f, 3.0f, 1.0f}) {  // wings that cancel, and that do not
     EXPECT_EQ(cut(polygon({{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {far, 3, 0}}), &bad).triangle_count(), 2u);
     EXPECT_EQ(bad, 1) << far;
   }
-  EXPECT_EQ(cut(polygon({{0, 0, 0}, {3, 3, 0}, {4, 3, 0}, {4, 0, 0}, {3, 0, 0}, {0, 2, 0}}), &bad).triangle_count(), 4u);
+  EXPECT_EQ(cut(polygon({{0, 0, 0}, {3, 3, 0}, {4, 3, 0}, {4, 0, 0}, {3, 0, 0}, {0, 2, 0}}), &bad).triangle_count(),
+            4u);
   EXPECT_EQ(bad, 1);
   for (const std::size_t size : {4u, 5u, 9u}) {
     std::vector<Vec3f> line, point(size, Vec3f(1, 2, 3));
@@ -248,7 +251,8 @@ TEST(Triangulation, HugePolygonsEndInTime) {
     std::int64_t bad = 0;
     EXPECT_EQ(cut(polygon(points), &bad).triangle_count(), points.size() - 2);
     std::fprintf(stderr, "after %zu corners: %.3f s, %lld bad\n", points.size(),
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), static_cast<long long>(bad));
+                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                 static_cast<long long>(bad));
   }
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
 }
@@ -258,7 +262,7 @@ TEST(Triangulation, CarriesFacesNormalsAndTextureCorners) {
   mesh.positions.assign({Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(1, 1, 0), Vec3f(0, 1, 0)});
   mesh.face_sizes.assign({3, 4});
   mesh.corners.assign({0, 1, 2, 0, 1, 2, 3});
-  mesh.normals.assign({Vec3f(0, 0, 1)});
+  mesh.normals.push_back(Vec3f(0, 0, 1));
   mesh.normal_corners.assign(7, 0);
   mesh.texture_coordinates.assign(7, Vec2f(0, 0));
   mesh.texture_corners.assign({0, 1, 2, 3, 4, 5, 6});

@@ -20,12 +20,14 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 
-/// Faces of the cube +-1, counter-clockwise from outside. `cut` chooses each face's form: 0 quad, 1 and 2 the diagonals.
+/// Faces of the cube +-1, counter-clockwise from outside. `cut` chooses each face's form: 0 quad, 1 and 2 the
+/// diagonals.
 PolygonMesh cube(unsigned cut) {
   PolygonMesh mesh;
   for (int i = 0; i < 8; ++i)
     mesh.positions.push_back(Vec3f(i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f));
-  const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   for (const auto& q : quads) {
     if (cut % 3 == 0) {
       mesh.face_sizes.push_back(4);
@@ -90,8 +92,8 @@ TEST(VertexNormals, FacesThatMeetAtExactlyTheCreaseAngleAreSmooth) {
 TEST(VertexNormals, ATeeAtNinetyDegreesHasNoErrorWithACrease) {
   // A fin standing on a plate, sharing the two vertices of its foot: without a crease each is 45 degrees or more wrong.
   PolygonMesh mesh;
-  mesh.positions.assign({Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(1, 0, 1), Vec3f(0, 0, 1), Vec3f(0, 0, -1), Vec3f(1, 0, -1),
-                         Vec3f(1, 1, 0), Vec3f(0, 1, 0)});
+  mesh.positions.assign({Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(1, 0, 1), Vec3f(0, 0, 1), Vec3f(0, 0, -1),
+                         Vec3f(1, 0, -1), Vec3f(1, 1, 0), Vec3f(0, 1, 0)});
   mesh.face_sizes.assign({4, 4, 4});
   mesh.corners.assign({0, 3, 2, 1, 4, 0, 1, 5, 0, 1, 6, 7});
   compute_vertex_normals(mesh, 40 * kDegree);
@@ -107,8 +109,7 @@ TEST(VertexNormals, SmoothSidesJoinAroundAVertexAcrossManyEdges) {
   mesh.positions.push_back(Vec3f(0, 0, 1));
   for (int i = 0; i < sides; ++i)
     mesh.positions.push_back(Vec3f(Vec3d(std::cos(2 * kPi * i / sides), std::sin(2 * kPi * i / sides), 0)));
-  for (std::uint32_t i = 0; i < sides; ++i)
-    mesh.corners.insert(mesh.corners.end(), {0, 1 + i, 1 + (i + 1) % sides});
+  for (std::uint32_t i = 0; i < sides; ++i) mesh.corners.insert(mesh.corners.end(), {0, 1 + i, 1 + (i + 1) % sides});
   compute_vertex_normals(mesh, 20 * kDegree);
   EXPECT_TRUE(mesh.normal_corners.empty());
   EXPECT_NEAR(mesh.normals[0].z, 1, 1e-6);
@@ -158,9 +159,9 @@ TEST(VertexNormals, TessellatedSphereStaysWithinItsFacetsAngle) {
       PolygonMesh mesh = sphere(rings, triangles);
       compute_vertex_normals(mesh, kPi);
       // The plane of a facet whose corners lie on the sphere meets it in a circle that passes through them. Its edges
-      // are at most h = pi / rings long, its diagonals sqrt(2) h, so that circle's angular radius is at most h / sqrt(2)
-      // (1 + O(h^2)); that is the angle between the facet's normal and the sphere's at a corner. A mean of unit vectors
-      // within a cone stays within it.
+      // are at most h = pi / rings long, its diagonals sqrt(2) h, so that circle's angular radius is at most h /
+      // sqrt(2) (1 + O(h^2)); that is the angle between the facet's normal and the sphere's at a corner. A mean of unit
+      // vectors within a cone stays within it.
       const double bound = kPi / rings / std::sqrt(2.0) * 1.05;
       double worst = 0, mean = 0;
       for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -194,8 +195,8 @@ TEST(VertexNormals, DegenerateFacesContributeNothingAndNoNormalIsZero) {
     // Two smooth triangles with a sliver without area between them, a lone face without area, a sheet with both sides,
     // and a vertex without a face.
     mesh.positions.assign({Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(2, 0, 0), Vec3f(1, 1, 0), Vec3f(1, -1, 0),
-                           Vec3f(5, 0, 0), Vec3f(6, 0, 0), Vec3f(7, 0, 0), Vec3f(8, 0, 0), Vec3f(8, 1, 0), Vec3f(9, 0, 0),
-                           Vec3f(3, 3, 3)});
+                           Vec3f(5, 0, 0), Vec3f(6, 0, 0), Vec3f(7, 0, 0), Vec3f(8, 0, 0), Vec3f(8, 1, 0),
+                           Vec3f(9, 0, 0), Vec3f(3, 3, 3)});
     mesh.corners.assign({0, 2, 3, 0, 1, 2, 0, 4, 1, 1, 4, 2, 5, 6, 7, 8, 9, 10, 10, 9, 8});
     compute_vertex_normals(mesh, crease);
     for (const Vec3f& n : mesh.normals) EXPECT_NEAR(n.length(), 1, 2e-7);

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -223,6 +225,35 @@ TEST(DisplayTransformTest, AcesConfigGetsRec709Radiance) {
           EXPECT_EQ(error.kind(), ErrorKind::bad_input);  // a view that asks for looks or files that are not there
         }
   }
+}
+
+TEST(DisplayTransformTest, ConfigWithoutRec709GetsItThroughAces) {
+  // The built-in config with its Rec.709 space under a name nobody knows and another scene_linear role: the way through
+  // aces_interchange must end at the same values.
+  std::string text = builtin_ocio_config();
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  };
+  replace("aliases: [lin_rec709, Linear Rec.709 (sRGB)]", "aliases: []");
+  replace("Linear Rec.709", "House space");
+  replace("scene_linear: House space", "scene_linear: ACES2065-1");
+  std::string file = ::testing::TempDir() + "raytree-XXXXXX.ocio";
+  const int descriptor = mkstemps(file.data(), 5);
+  ASSERT_GE(descriptor, 0);
+  ASSERT_EQ(write(descriptor, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  close(descriptor);
+  {
+    const DisplayTransform through = transform_of("sRGB", "Standard", 0, file);
+    EXPECT_EQ(through.source_space(), "aces_interchange");
+    float a[9] = {.18f, .18f, .18f, .7f, .2f, .05f, 0, .4f, 1}, b[9];
+    std::copy(a, a + 9, b);
+    through.apply(a, 3);
+    transform_of("sRGB", "Standard").apply(b, 3);
+    // The matrix and its inverse leave a few float roundings, times the sRGB slope of 12.92 at most.
+    for (int i = 0; i < 9; ++i) EXPECT_NEAR(a[i], b[i], 12.92 * 8 * 0x1p-24) << i;
+  }
+  unlink(file.c_str());
 }
 
 TEST(DisplayTransformTest, DamagedConfigsAreErrors) {

@@ -98,10 +98,10 @@ inline bool equal(const LightDescription& a, const LightDescription& b) {
   return name == b.name && color == b.color && equal(kind, b.kind);
 }
 inline bool equal(const MaterialDescription& a, const MaterialDescription& b) {
-  const auto& [name, diffuse, ambient, highlight, reflection, transmission, index] = a;
+  const auto& [name, diffuse, ambient, highlight, reflection, transmission, index, fresnel] = a;
   return name == b.name && equal(diffuse, b.diffuse) && ambient.has_value() == b.ambient.has_value() &&
          (!ambient || equal(*ambient, *b.ambient)) && equal(highlight, b.highlight) && reflection == b.reflection &&
-         transmission == b.transmission && index == b.index_of_refraction;
+         transmission == b.transmission && index == b.index_of_refraction && fresnel == b.fresnel;
 }
 /// All but where it stood in its file.
 inline bool equal(const ShapeDescription& a, const ShapeDescription& b) {

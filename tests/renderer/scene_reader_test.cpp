@@ -131,9 +131,10 @@ TEST(SceneReader, FilesAreReadFromDiskAndKnowTheirFolder) {
 TEST(SceneReader, RefusalsSayWhatWhereAndWhatWouldBeRight) {
   EXPECT_EQ(refusal("\"materials\": {\n \"glass\": {\n  \"difuse\": 1}}"),
             "s.json:4: materials.glass: unknown key \"difuse\"; known keys: diffuse, ambient, highlight, reflection, "
-            "transmission, index_of_refraction (did you mean \"diffuse\"?)");
+            "transmission, index_of_refraction, fresnel (did you mean \"diffuse\"?)");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\n\"type\": \"direct\"}}"),
-            "s.json:3: lights.sun.type: unknown type \"direct\"; known types: directional, point");
+            "s.json:3: lights.sun.type: unknown type \"direct\"; known types: directional, point (did you mean "
+            "\"directional\"?)");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\"tpye\": \"point\"}}"),
             "s.json:2: lights.sun: missing key \"type\"; one of: directional, point (there is \"tpye\")");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\"type\": \"point\", \"direction\": [0, -1, 0]}}"),
@@ -150,7 +151,8 @@ TEST(SceneReader, RefusalsSayWhatWhereAndWhatWouldBeRight) {
             "s.json:3: lights: a second light named \"a\"; the first is on line 2");
   EXPECT_EQ(refusal("\"cameras\": {\"\": {}}"), "s.json:2: cameras: a camera needs a name that is not empty");
   EXPECT_EQ(refusal("\"render\": {\"highlights\": \"half\"}"),
-            "s.json:2: render.highlights: unknown value \"half\"; known values: reflected, halfway");
+            "s.json:2: render.highlights: unknown value \"half\"; known values: reflected, halfway (did you mean "
+            "\"halfway\"?)");
   EXPECT_EQ(refusal("\"render\": {\"depth\": 2.5}"), "s.json:2: render.depth: expected a whole number, not 2.5");
   EXPECT_EQ(refusal("\"render\": {\"shadows\": 1}"), "s.json:2: render.shadows: expected true or false, not 1");
   EXPECT_EQ(refusal("\"cameras\": []"), "s.json:2: cameras: expected an object of cameras by name, not an empty array");
@@ -520,6 +522,10 @@ class Randomizer {
   float float_number(const Range& range = {}) { return static_cast<float>(number(range)); }
 
   void fill(const Field&, bool& x) { x = whole(0, 1) == 1; }
+  void fill(const Field&, std::optional<bool>& x) {
+    const int choice = whole(0, 2);
+    x = choice == 2 ? std::nullopt : std::optional(choice == 1);
+  }
   void fill(const Field& field, double& x) { x = number(field.range); }
   template <std::integral Integer>
   void fill(const Field& field, Integer& x) {
@@ -647,7 +653,7 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(LightDescription{}), 3 - 1) << "without name";
   EXPECT_EQ(count(CheckerPattern{}), 5);
   EXPECT_EQ(count(HighlightDescription{}), 2);
-  EXPECT_EQ(count(MaterialDescription{}), 7 - 1) << "without name";
+  EXPECT_EQ(count(MaterialDescription{}), 8 - 1) << "without name";
   EXPECT_EQ(count(FaceGroup{}), 4);
   EXPECT_EQ(count(MeshShape{}), 4);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";

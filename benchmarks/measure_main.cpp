@@ -1,0 +1,151 @@
+// The program `raytree_measure [ROW...] [--json FILE]`: measures the rows asked for, prints the table of README, and
+// ends with status 3 when a figure falls short of its bound.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "benchmarks/child_process.h"
+#include "benchmarks/machine.h"
+#include "benchmarks/rows.h"
+#include "geometry/error.h"
+
+namespace {
+
+using namespace raytree;
+using namespace raytree::benchmarks;
+
+constexpr int kSuccess = 0, kFailure = 1, kBadUsage = 2, kFallsShort = 3;
+
+std::string row_names() {
+  std::string names;
+  for (const Row& row : kRows) names += (names.empty() ? "" : ", ") + std::string(row.name);
+  return names;
+}
+
+std::string help() {
+  return "Usage: raytree_measure [ROW...] [--json FILE]\n\nMeasures the rows named, all without any: " + row_names() +
+         "\nPrints a table; exit status 3 when a figure falls short of its bound.\ndocs/benchmarks.md describes each "
+         "row.\n";
+}
+
+/// A folder that goes with the program's end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = std::filesystem::temp_directory_path() / "raytree-measure-XXXXXX";
+    if (mkdtemp(pattern.data()) == nullptr)
+      throw Error(ErrorKind::failure, {pattern, 0, ""}, "no folder for files in passing");
+    path_ = pattern;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A row that cannot be measured falls short: a missing program must not read as a bound that holds.
+std::vector<Figure> measured(const Row& row, const MeasureContext& context) {
+  try {
+    return row.measure(context);
+  } catch (const std::exception& error) {
+    Figure figure;
+    figure.row = row.name;
+    figure.what = "the row could not be measured";
+    figure.problem = error.what();
+    for (char& c : figure.problem)
+      if (c == '\n' || c == '|') c = ' ';
+    return {figure};
+  }
+}
+
+int measure(const std::vector<const Row*>& rows, const std::string& json_file) {
+  const ScratchFolder scratch;
+  const MeasureContext context{std::filesystem::read_symlink("/proc/self/exe").parent_path(), scratch.path(),
+                               [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }};
+  const auto machine = machine_lines();
+  std::string header;
+  for (const auto& [key, value] : machine) header += fmt::format("{}{}: {}", header.empty() ? "" : "; ", key, value);
+  std::printf("%s\n\n%s", header.c_str(), table_head().c_str());
+  std::fflush(stdout);
+
+  std::vector<Figure> figures;
+  for (const Row* row : rows)
+    for (Figure& figure : measured(*row, context)) {
+      std::printf("%s", table_line(figure).c_str());
+      std::fflush(stdout);
+      figures.push_back(std::move(figure));
+    }
+  std::printf("\n");
+  for (const Figure& figure : figures)
+    if (!figure.note.empty())
+      std::printf("- %s, %s: %s\n", figure.row.c_str(), figure.what.c_str(), figure.note.c_str());
+
+  if (!json_file.empty()) {
+    std::ofstream file(json_file);
+    file << figures_json(machine, figures);
+    if (!file.flush()) throw Error(ErrorKind::failure, {json_file, 0, ""}, "cannot be written");
+  }
+  for (const Figure& figure : figures)
+    if (!figure.holds()) return kFallsShort;
+  return kSuccess;
+}
+
+int run(const std::vector<std::string>& words) {
+  if (!words.empty() && words[0] == kLaunchFlag) {
+    std::printf("%s\n", launch_apart({words.begin() + 1, words.end()}).c_str());
+    return kSuccess;
+  }
+  if (words.size() == 1 && words[0] == kBareLargeFlag) {
+    std::printf("%s\n", bare_large_json().c_str());
+    return kSuccess;
+  }
+  std::vector<const Row*> rows;
+  std::string json_file;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--help" || words[i] == "-h") {
+      std::printf("%s", help().c_str());
+      return kSuccess;
+    }
+    if (words[i] == "--json") {
+      if (++i == words.size()) throw Error(ErrorKind::bad_input, {}, "--json takes a file name");
+      json_file = words[i];
+      continue;
+    }
+    const Row* found = nullptr;
+    for (const Row& row : kRows)
+      if (words[i] == row.name) found = &row;
+    if (found == nullptr)
+      throw Error(ErrorKind::bad_input, {}, fmt::format("no row \"{}\"; rows: {}", words[i], row_names()));
+    rows.push_back(found);
+  }
+  if (rows.empty())
+    for (const Row& row : kRows) rows.push_back(&row);
+  return measure(rows, json_file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run({argv + 1, argv + argc});
+  } catch (const Error& error) {
+    std::fprintf(stderr, "raytree_measure: %s\n", error.what());
+    return error.kind() == ErrorKind::bad_input ? kBadUsage : kFailure;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "raytree_measure: %s\n", error.what());
+    return kFailure;
+  }
+}

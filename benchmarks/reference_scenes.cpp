@@ -1,0 +1,67 @@
+#include "benchmarks/reference_scenes.h"
+
+#include <string>
+#include <utility>
+
+#include "renderer/builtin_scenes.h"
+#include "renderer/scene_reader.h"
+
+namespace raytree::benchmarks {
+namespace {
+
+void add_shape(SceneDescription& scene, const char* name, ShapeKind kind, const Vec3d& shift) {
+  ShapeDescription shape;
+  shape.name = name;
+  shape.kind = std::move(kind);
+  shape.transform.translate(shift);
+  scene.shapes.push_back(std::move(shape));
+}
+
+}  // namespace
+
+SceneDescription reference_scene() {
+  SceneDescription scene = builtin_scene("spheres-1980");
+  scene.image = {1280, 960};
+  scene.render.antialias = Antialiasing();
+  return scene;
+}
+
+SceneDescription reference_scene_with_mesh() {
+  SceneDescription scene = reference_scene();
+  scene.name += " with a terrain of 1M triangles";
+  TerrainShape terrain;
+  terrain.triangles = 1'000'000;
+  terrain.size = 12;
+  terrain.height = 2.5;
+  add_shape(scene, "terrain", terrain, {0, 0, -8});
+  return scene;
+}
+
+SceneDescription terrain_scene(std::int64_t triangles) {
+  SceneDescription scene = builtin_scene(kTerrainSceneName);
+  scene.image = {1920, 1080};
+  set_scene_value(scene, kTerrainCountPath, std::to_string(triangles));
+  return scene;
+}
+
+SceneDescription trivial_scene() {
+  SceneDescription scene;
+  scene.name = "trivial";
+  scene.image = {64, 64};
+  CameraDescription camera;
+  camera.name = "main";
+  scene.cameras.push_back(camera);
+  LightDescription sun;
+  sun.name = "sun";
+  sun.kind = DirectionalLight{{-1, -1, -1}};
+  scene.lights.push_back(sun);
+  add_shape(scene, "ball", SphereShape{}, {0, 0, 0});
+  return scene;
+}
+
+Scene prepared(SceneDescription description) {
+  Warnings warnings;
+  return prepare(std::move(description), PrepareOptions(), warnings);
+}
+
+}  // namespace raytree::benchmarks

@@ -1,0 +1,28 @@
+// The scenes that rows measure.
+#pragma once
+
+#include <cstdint>
+
+#include "renderer/scene.h"
+#include "renderer/scene_description.h"
+
+namespace raytree::benchmarks {
+
+/// spheres-1980 at 1280x960 without anti-aliasing; depth and cutoff are the scene's own.
+SceneDescription reference_scene();
+
+/// The same with a terrain of about a million triangles behind the spheres, seen straight, mirrored and refracted.
+SceneDescription reference_scene_with_mesh();
+
+/// The built-in terrain with so many triangles, 1920x1080; all else is the scene's own.
+SceneDescription terrain_scene(std::int64_t triangles);
+inline constexpr const char* kTerrainSceneName = "terrain";                   ///< as `raytree render` takes it
+inline constexpr const char* kTerrainCountPath = "shapes.terrain.triangles";  ///< as `--set` takes it
+
+/// One sphere, 64x64: what is left of a render's time is the program's start.
+SceneDescription trivial_scene();
+
+/// Prepares a scene for any number of threads.
+Scene prepared(SceneDescription description);
+
+}  // namespace raytree::benchmarks

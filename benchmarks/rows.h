@@ -1,0 +1,43 @@
+// The rows of the table, one function and one file each; docs/benchmarks.md says how each is measured and what it does
+// not say.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "benchmarks/measurement.h"
+
+namespace raytree::benchmarks {
+
+struct MeasureContext {
+  std::filesystem::path programs;                    ///< folder of raytree, raytree_measure and the probes
+  std::filesystem::path scratch;                     ///< a folder of our own for files that rows write
+  std::function<void(const std::string&)> progress;  ///< one line each
+};
+
+std::vector<Figure> measure_floor(const MeasureContext& context);
+std::vector<Figure> measure_waves(const MeasureContext& context);
+std::vector<Figure> measure_threads(const MeasureContext& context);
+std::vector<Figure> measure_start(const MeasureContext& context);
+std::vector<Figure> measure_large(const MeasureContext& context);
+std::vector<Figure> measure_idle(const MeasureContext& context);
+std::vector<Figure> measure_time_split(const MeasureContext& context);
+std::vector<Figure> measure_loading(const MeasureContext& context);
+
+struct Row {
+  const char* name;
+  std::vector<Figure> (*measure)(const MeasureContext&);
+};
+inline constexpr Row kRows[] = {
+    {"floor", measure_floor}, {"waves", measure_waves}, {"threads", measure_threads},  {"start", measure_start},
+    {"large", measure_large}, {"idle", measure_idle},   {"split", measure_time_split}, {"loading", measure_loading},
+};
+
+/// What `large` compares with, measured in a process of its own (see large.cpp): generates the terrain, builds over it
+/// with Embree alone, traces the picture's rays by bare calls; JSON of seconds and bytes.
+std::string bare_large_json();
+inline constexpr const char* kBareLargeFlag = "--bare-large";  ///< makes raytree_measure print it
+
+}  // namespace raytree::benchmarks

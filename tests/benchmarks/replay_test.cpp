@@ -1,0 +1,89 @@
+// The two comparisons that floor and waves rest on: bare replays find what the render found, and the recursion paints
+// what the generations paint. A comparison that cannot fail is worth nothing, so each is shown to fail too.
+#include <gtest/gtest.h>
+
+#include "benchmarks/bare_trace.h"
+#include "benchmarks/recording_intersector.h"
+#include "benchmarks/recursive_tracer.h"
+#include "benchmarks/reference_scenes.h"
+
+namespace raytree::benchmarks {
+namespace {
+
+SceneDescription small_scene() {
+  SceneDescription scene = reference_scene();
+  scene.image = {200, 150};
+  return scene;
+}
+
+/// A plane in place of the floor: the part that Embree does not trace.
+SceneDescription scene_with_plane() {
+  SceneDescription scene = small_scene();
+  ShapeDescription plane;
+  plane.name = "ground";
+  plane.kind = PlaneShape{{0, -0.5, 0}, {0, 1, 0}};
+  scene.shapes.push_back(plane);
+  return scene;
+}
+
+void expect_replays_agree(SceneDescription description) {
+  Scene scene = prepared(std::move(description));
+  const RecordedRender recorded = record_render(scene);
+  const auto counts = recorded.record.ray_counts();
+  EXPECT_EQ(counts[0], recorded.statistics.rays[static_cast<int>(RayKind::primary)]);
+  EXPECT_EQ(counts[1], recorded.statistics.rays[static_cast<int>(RayKind::reflected)] +
+                           recorded.statistics.rays[static_cast<int>(RayKind::refracted)]);
+  EXPECT_EQ(counts[2] + counts[3], recorded.statistics.rays[static_cast<int>(RayKind::shadow)]);
+  EXPECT_GT(recorded.record.hits[0], 0u);
+  EXPECT_GT(recorded.record.hits[2], 0u);
+
+  const BareReplay replay(embree_of(scene), recorded.record);
+  for (const ReplayCall call : {ReplayCall::coherent_packets, ReplayCall::incoherent_packets, ReplayCall::single_rays})
+    for (const int threads : {1, 2}) {
+      ReplayCalls calls;
+      calls.fill(call);
+      const ReplayTally tally = replay_pass(replay, calls, threads);
+      EXPECT_EQ(hit_mismatch(tally, recorded.record), "") << static_cast<int>(call) << " threads " << threads;
+      EXPECT_GT(tally.total_seconds(), 0);
+    }
+}
+
+TEST(Replay, FindsWhatTheRenderFound) { expect_replays_agree(small_scene()); }
+TEST(Replay, FindsWhatTheRenderFoundBesideAPlane) { expect_replays_agree(scene_with_plane()); }
+
+TEST(Replay, AMismatchIsSeen) {
+  Scene scene = prepared(small_scene());
+  RecordedRender recorded = record_render(scene);
+  const BareReplay replay(embree_of(scene), recorded.record);
+  const ReplayTally tally = replay_pass(replay, ReplayCalls{}, 1);
+  recorded.record.hits[2] += recorded.record.ray_counts()[2] / 1000;
+  EXPECT_NE(hit_mismatch(tally, recorded.record), "");
+}
+
+TEST(Recursion, PaintsThePictureOfTheGenerations) {
+  for (const double cutoff : {0.0, 0.02}) {
+    SceneDescription description = small_scene();
+    description.render.cutoff = cutoff;
+    const Scene scene = prepared(std::move(description));
+    const RenderResult rendered = render(scene, RenderOptions());
+    const RecursiveResult recursive = render_recursively(scene, embree_of(scene), 2);
+    EXPECT_EQ(picture_mismatch(recursive, rendered), "") << "cutoff " << cutoff;
+    if (cutoff > 0) {
+      EXPECT_GT(rendered.statistics.branches_cut, 0u);
+    }
+  }
+}
+
+TEST(Recursion, AMismatchIsSeen) {
+  const Scene scene = prepared(small_scene());
+  const RenderResult rendered = render(scene, RenderOptions());
+  RecursiveResult recursive = render_recursively(scene, embree_of(scene), 1);
+  RecursiveResult other_tree = recursive;
+  other_tree.rays[2] += other_tree.rays[2] / 100;
+  EXPECT_NE(picture_mismatch(other_tree, rendered), "");
+  for (std::size_t i = 0; i < recursive.pixels.size(); i += 500) recursive.pixels[i].g += 0.01f;
+  EXPECT_NE(picture_mismatch(recursive, rendered), "");
+}
+
+}  // namespace
+}  // namespace raytree::benchmarks
