@@ -239,8 +239,8 @@ TEST(EmbreeIntersector, CoherentAndIncoherentCallsAgreeInHitAndMiss) {
         }
         ++hits;
         ASSERT_EQ(a[i].primitive, b[i].primitive);
-        // On triangles incoherent packets equal single rays bit for bit. On spheres and discs Embree's packets and single
-        // rays differ by an ulp or two of the distance; the surface, solved again in double, is the same.
+        // On triangles incoherent packets equal single rays bit for bit. On spheres and discs Embree's packets and
+        // single rays differ by an ulp or two of the distance; the surface, solved again in double, is the same.
         if (one.geometry >= kFirstMeshGeometry) {
           EXPECT_EQ(one.distance, b[i].distance);
           EXPECT_EQ(one.u, b[i].u);
