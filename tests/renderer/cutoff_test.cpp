@@ -130,7 +130,7 @@ TEST(Cutoff, IsKeptPerSampleAndChannelOnRandomScenes) {
   }
   // The test tests something: over a hundred scenes lose branches to the cutoff.
   EXPECT_GT(scenes_cut, 100u);
-  EXPECT_GT(cut_branches, 10000u);
+  EXPECT_GT(cut_branches, 5000u);
   EXPECT_GT(cut_samples, 3000u);
   RecordProperty("scenes_cut", static_cast<int>(scenes_cut));
   RecordProperty("branches_cut", static_cast<int>(cut_branches));
