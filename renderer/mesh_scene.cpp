@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <numbers>
+#include <variant>
 
 #include "geometry/mesh_file.h"
 
@@ -148,29 +149,38 @@ SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string
   scene.render.antialias = {Antialiasing::Method::grid, 3};
   scene.cameras = {fitted_camera(*mesh, box, image)};
 
-  const Vec3d to_key = towards(axes, -0.75, 1.15, 0.7), to_fill = towards(axes, 0.9, 0.45, 0.5);
-  const Rgb key(0.98f, 0.93f, 0.84f), fill(0.15f, 0.18f, 0.24f);
-  scene.ambient = Rgb(0.15f, 0.16f, 0.18f);
-  scene.lights = {{"key", key, DirectionalLight{-to_key}}, {"fill", fill, DirectionalLight{-to_fill}}};
+  // A warm key that rakes across the front, so that relief shows; a weak fill against it, so that shadows keep form; a
+  // cool rim from behind, which parts the object from the ground.
+  const Vec3d to_key = towards(axes, -1.1, 1.1, 0.35), to_fill = towards(axes, 0.9, 0.45, 0.5),
+              to_rim = towards(axes, 0.8, 0.55, -0.8);
+  scene.ambient = Rgb(0.11f, 0.12f, 0.15f);
+  scene.lights = {{"key", Rgb(1.15f, 1.02f, 0.85f), DirectionalLight{-to_key}},
+                  {"fill", Rgb(0.12f, 0.14f, 0.18f), DirectionalLight{-to_fill}},
+                  {"rim", Rgb(0.50f, 0.60f, 0.80f), DirectionalLight{-to_rim}}};
 
-  MaterialDescription clay;
+  MaterialDescription clay;  // fired and glazed: it mirrors as glass does, little from the front and all at the rim
   clay.name = "clay";
-  clay.diffuse = Rgb(0.66f, 0.44f, 0.30f);
-  clay.highlight = {Rgb(0.22f), 28};
-  clay.reflection = Rgb(0.035f);
+  clay.diffuse = Rgb(0.55f, 0.22f, 0.11f);
+  clay.highlight = {Rgb(0.25f), 50};
+  clay.reflection = Rgb(1);
+  clay.index_of_refraction = 1.5;
+  clay.fresnel = true;
 
   MaterialDescription floor;
   floor.name = "ground";
-  const Rgb floor_color(0.24f, 0.25f, 0.27f);
+  const Rgb floor_color(0.06f, 0.065f, 0.08f);
   floor.diffuse = floor_color;
-  floor.reflection = Rgb(0.06f);
+  floor.reflection = Rgb(0.1f);
   scene.materials = {clay, floor};
 
-  // At the horizon the ground mirrors the horizon: with h = local + k_s h the two meet without an edge.
-  const Rgb local =
-      floor_color * (scene.ambient + key * static_cast<float>(to_key.y) + fill * static_cast<float>(to_fill.y));
+  // At the horizon the ground mirrors the horizon: with h = local + k_s h the two meet without an edge. The bright top
+  // is out of the picture; the glaze shows it.
+  Rgb irradiance = scene.ambient;
+  for (const LightDescription& light : scene.lights)
+    irradiance += light.color * static_cast<float>(-std::get<DirectionalLight>(light.kind).direction.y);
+  const Rgb local = floor_color * irradiance;
   const Rgb horizon = local * (1 / (1 - floor.reflection.r));
-  scene.background = GradientBackground{local, horizon, Rgb(0.03f, 0.04f, 0.06f)};
+  scene.background = GradientBackground{local, horizon, Rgb(0.60f, 0.65f, 0.75f)};
 
   // The ground touches the lowest vertex; what lies flat on it stays clear of it by a little, since two surfaces at one
   // place have no front.

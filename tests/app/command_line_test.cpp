@@ -265,7 +265,7 @@ TEST(CommandLineInfo, SaysWhatIsInAScene) {
   EXPECT_GE(info["totals"]["traced_triangles"], 12);
   EXPECT_EQ(info["objects"][0]["bounds"]["max"], Json({1.0, 1.0, 1.0}));
   EXPECT_EQ(info["objects"].size(), 2u);
-  EXPECT_EQ(info["lights"].size(), 2u);
+  EXPECT_EQ(info["lights"].size(), 3u);
   EXPECT_EQ(info["materials_in_use"].size(), 2u);
   EXPECT_FALSE(info["features"].empty());
   // Color and alpha: four planes of floats.

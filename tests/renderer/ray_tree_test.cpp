@@ -48,7 +48,7 @@ TEST(RayTree, FacingMirrorsGiveTheGeometricSum) {
       // Depth N shows N - 1 reflections: rays and the deepest level say so.
       EXPECT_EQ(result.statistics.rays[static_cast<int>(RayKind::reflected)], 16u * static_cast<unsigned>(depth - 1));
       EXPECT_EQ(result.statistics.branches_at_depth_limit, 16u);
-      EXPECT_EQ(result.statistics.deepest_level, depth == 1 ? 0 : depth);
+      EXPECT_EQ(result.statistics.deepest_level, depth);
     }
 }
 

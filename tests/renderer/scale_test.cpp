@@ -48,9 +48,9 @@ TEST(Scale, FloorsAndObjectsShowNoAcneAndKeepTheirShadows) {
             "floor"));
         scene.shapes.back().transform = scaling(Vec3d(scale)) * translation(at);
       }
-      // A sphere and a box that stand on the floor.
+      // A sphere and a box that stand on the floor; no pixel center falls on an edge.
       scene.shapes.push_back(shape(SphereShape{at + Vec3d(-1, 0.5, 0) * scale, 0.5 * scale}, "object"));
-      scene.shapes.push_back(mesh_shape(box_mesh({0.5f, 0, -0.25f}, {1, 0.5f, 0.25f}), "object"));
+      scene.shapes.push_back(mesh_shape(box_mesh({0.5f, 0, -0.3f}, {1, 0.5f, 0.3f}), "object"));
       scene.shapes.back().transform = scaling(Vec3d(scale)) * translation(at);
       const RenderResult result = rendered(std::move(scene));
       int lit = 0, shadowed = 0, acne = 0, unshadowed = 0;
@@ -63,7 +63,7 @@ TEST(Scale, FloorsAndObjectsShowNoAcneAndKeepTheirShadows) {
           const Vec3d c(-1, 0.5, 0);
           const double along = (c - p).dot(to_sun), away = ((c - p) - to_sun * along).length();
           double enter = 0, leave = 1e9;
-          const Vec3d low(0.5, 0, -0.25), high(1, 0.5, 0.25);
+          const Vec3d low(0.5, 0, -0.3), high(1, 0.5, 0.3);
           for (int axis = 0; axis < 3; ++axis) {
             const double a = (low[axis] - p[axis]) / to_sun[axis], b = (high[axis] - p[axis]) / to_sun[axis];
             enter = std::max(enter, std::min(a, b));
@@ -81,7 +81,7 @@ TEST(Scale, FloorsAndObjectsShowNoAcneAndKeepTheirShadows) {
       EXPECT_EQ(acne, 0) << "floor " << floor;
       EXPECT_EQ(unshadowed, 0) << "floor " << floor;
       EXPECT_GT(lit, 200) << "floor " << floor;
-      EXPECT_GT(shadowed, 20) << "floor " << floor;
+      EXPECT_GT(shadowed, 15) << "floor " << floor;
       // The sphere and the box themselves: lit where they face the sun, by N.L and nothing less.
       int own_acne = 0, faces = 0;
       for (int y = 0; y < size; ++y)
