@@ -84,6 +84,8 @@ class RenderRun {
     if (options_.progress != ProgressMode::none)
       render_options.on_progress = [this](const RenderProgress& done) { progress_.update(done); };
     report_.before_trace_seconds = seconds_since_launch();
+    report_.first_ray_clock =
+        std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     // Loaded while the tracing runs, and no sooner: the dynamic loader's lock, held for a third of a second, would stop
     // OpenColorIO, TBB and Embree, which open libraries of their own as they start.
     preload_image_io();
