@@ -32,7 +32,6 @@ class RenderRun {
       : options_(std::move(options)), progress_(progress), interruption_(interruption) {}
 
   void run() {
-    preload_image_io();
     if (options_.writes_display_referred()) transform_.emplace(options_.display);
     SceneDescription description = load();
     const Scene scene = build(std::move(description));
@@ -85,6 +84,11 @@ class RenderRun {
     if (options_.progress != ProgressMode::none)
       render_options.on_progress = [this](const RenderProgress& done) { progress_.update(done); };
     report_.before_trace_seconds = seconds_since_launch();
+    report_.first_ray_clock =
+        std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    // Loaded while the tracing runs, and no sooner: the dynamic loader's lock, held for a third of a second, would stop
+    // OpenColorIO, TBB and Embree, which open libraries of their own as they start.
+    preload_image_io();
     RenderResult result = render(scene, render_options);
     check_interruption();
     report_.scene = scene.description.name;

@@ -63,6 +63,7 @@ std::string statistics_json(const RenderReport& report) {
                      {"write", report.write_seconds},
                      {"before_trace", report.before_trace_seconds},
                      {"total", seconds_since_launch()}};
+  json["clock"] = {{"first_ray", report.first_ray_clock}};
   json["time_split_percent"] = {{"overhead", percent(trace.overhead_seconds(), trace.thread_seconds)},
                                 {"intersection", percent(trace.intersection_seconds, trace.thread_seconds)},
                                 {"shading", percent(trace.shading_seconds, trace.thread_seconds)}};

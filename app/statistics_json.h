@@ -25,6 +25,7 @@ struct RenderReport {
   double display_seconds = 0;       ///< display transform, all files
   double write_seconds = 0;         ///< encoding and writing, all files
   double before_trace_seconds = 0;  ///< from launch to the start of tracing
+  double first_ray_clock = 0;       ///< reading of the steady clock at the start of tracing, seconds
   std::uint64_t film_bytes = 0, array_bytes = 0, intersector_bytes = 0;
   std::int64_t display_not_finite = 0;  ///< channel values that the display transform had to make finite
   std::vector<std::string> files;

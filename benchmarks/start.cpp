@@ -22,14 +22,9 @@ nlohmann::json statistics_of(const std::filesystem::path& path) {
   return nlohmann::json::parse(file);
 }
 
-/// Seconds from the child's launch to its first ray. The program notes the steady clock, which all processes share, as
-/// `clock.first_ray`. Where it does not, the time that the child spent before it, launch and end included, is an upper
-/// bound.
+/// Seconds from the child's launch to its first ray, by the steady clock, which all processes share.
 double first_ray_seconds(const ChildResult& child, const nlohmann::json& statistics) {
-  if (const auto clock = statistics.find("clock"); clock != statistics.end())
-    return clock->at("first_ray").get<double>() - child.start_clock;
-  const nlohmann::json& seconds = statistics.at("seconds");
-  return child.wall_seconds - (seconds.at("total").get<double>() - seconds.at("before_trace").get<double>());
+  return statistics.at("clock").at("first_ray").get<double>() - child.start_clock;
 }
 
 Figure first_ray_figure(const MeasureContext& context, const std::string& scene) {

@@ -167,6 +167,24 @@ TEST(ObjReader, GroupsFollowWhenFacesAreDropped) {
   EXPECT_EQ(mesh.groups[1].first_face, 1u);
 }
 
+TEST(ObjReader, GroupsCannotMultiplyAFile) {
+  // Runs of faces hold copies of names: their number and the names' length are bounded, and what is joined is counted.
+  std::string text = kThree + "g " + std::string(1000, 'n') + "\n";
+  for (int i = 0; i < 150000; ++i) text += "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
+  Warnings warnings;
+  const PolygonMesh mesh = read(text, &warnings);
+  EXPECT_EQ(mesh.face_count(), 300000u);
+  ASSERT_EQ(mesh.groups.size(), 262144u);
+  EXPECT_EQ(mesh.groups[0].name.size(), 255u);
+  EXPECT_EQ(mesh.groups.back().face_count, 300000u - 262143u);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].count, 300000 - 262144);
+  // Records of changes within a chunk are bounded too.
+  text = kThree;
+  for (int i = 0; i < 100000; ++i) text += "g\nf\n";
+  EXPECT_EQ(error_of(text + "g\nf 1 2"), "test.obj: no face of this file can be drawn");
+}
+
 TEST(ObjReader, ErrorsNameFileAndLine) {
   EXPECT_EQ(error_of(kThree + "f 1 2 9\n"), "test.obj:4: the face refers to vertex 9; there are 3 in the file");
   EXPECT_EQ(error_of(kThree + "f 1 2 -4\n"), "test.obj:4: the face refers to vertex -4; there are 3 before this line");
