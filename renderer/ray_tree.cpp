@@ -252,8 +252,8 @@ void TileTracer::State::collect_hits(bool eye) {
     const ShapeId shape = shapes.shape_of(hit.geometry, hit.primitive);
     const Material& material = scene.materials[scene.shape_materials[shape]];
     BatchPoint& point = points[p];
-    point.shading =
-        shading_point(surface_at(shapes, ray.origin, ray.direction, hit, wants_texture), ray.direction, material);
+    point.shading.surface = surface_at(shapes, ray.origin, ray.direction, hit, wants_texture);
+    complete_shading_point(point.shading, ray.direction, material);
     point.weight = ray.weight;
     point.allowance = ray.allowance;
     point.sample = ray.sample;

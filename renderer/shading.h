@@ -24,13 +24,22 @@ struct ShadingPoint {
   bool leaving = false;                ///< the ray hit the surface from behind: it is leaving the inside
 };
 
-inline ShadingPoint shading_point(const SurfacePoint& surface, const Vec3f& direction, const Material& material) {
-  ShadingPoint point{surface, direction, &material, material.diffuse.at(surface), false};
-  if (direction.dot(surface.geometric_normal) > 0) {
-    point.leaving = true;
-    point.surface.geometric_normal = -surface.geometric_normal;
-    point.surface.shading_normal = -surface.shading_normal;
+/// Completes a point whose surface is set, in place.
+inline void complete_shading_point(ShadingPoint& point, const Vec3f& direction, const Material& material) {
+  point.direction = direction;
+  point.material = &material;
+  point.diffuse = material.diffuse.at(point.surface);
+  point.leaving = direction.dot(point.surface.geometric_normal) > 0;
+  if (point.leaving) {
+    point.surface.geometric_normal = -point.surface.geometric_normal;
+    point.surface.shading_normal = -point.surface.shading_normal;
   }
+}
+
+inline ShadingPoint shading_point(const SurfacePoint& surface, const Vec3f& direction, const Material& material) {
+  ShadingPoint point;
+  point.surface = surface;
+  complete_shading_point(point, direction, material);
   return point;
 }
 
@@ -92,12 +101,15 @@ inline Branches branches(const ShadingPoint& point) {
   if (material.has_transmission || fresnel) {
     const float relative_index = point.leaving ? material.inverse_index : material.index;
     const float eta = point.leaving ? material.index : material.inverse_index;
-    if (fresnel) reflectance = fresnel_reflectance(std::min(cosine, 1.0f), relative_index);
-    if (material.has_transmission)
-      if (const auto refracted = refracted_direction(point.direction, normal, eta)) {
-        result.refracted = kept_on_side(*refracted, -side);
+    cosine = std::min(cosine, 1.0f);
+    if (const auto refracted_cos = refracted_cosine(cosine, eta)) {
+      if (fresnel) reflectance = fresnel_reflectance(cosine, *refracted_cos, relative_index);
+      if (material.has_transmission) {
+        const Vec3f refracted = refracted_direction(point.direction, normal, eta, cosine, *refracted_cos);
+        result.refracted = kept_on_side(refracted, -side);
         result.refracted_weight = fresnel ? material.transmission * (1 - reflectance) : material.transmission;
       }
+    }
   }
   if (material.has_reflection) {
     result.reflected = kept_on_side(reflected_direction(point.direction, normal), side);
