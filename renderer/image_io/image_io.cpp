@@ -256,8 +256,10 @@ void encode_to(MemoryFile& file, const RaytreeImage& image, std::int64_t& half_c
   if (!output->supports("ioproxy") || !output->set_ioproxy(&file)) fail("this format cannot be encoded in memory");
   output->threads(image.threads);
   const auto check = [&](bool done) {
-    const bool bad = output->has_error();
-    if (bad || !done) fail(bad ? output->geterror() : std::string("the encoder failed without a reason"));
+    if (done && !output->has_error()) return;
+    std::string reason = output->geterror();
+    if (reason.empty()) reason = "the encoder failed without a reason";
+    fail(reason);
   };
   check(output->open(dummy_name(image.format), spec));
 
@@ -349,8 +351,10 @@ void decode_file(const char* path, const RaytreeImageSink& sink) {
   hand_over_metadata(spec, sink);
 
   const auto check = [&](bool done) {
-    const bool bad = input->has_error();
-    if (bad || !done) fail(bad ? input->geterror() : std::string("the decoder failed without a reason"));
+    if (done && !input->has_error()) return;
+    std::string reason = input->geterror();
+    if (reason.empty()) reason = "the decoder failed without a reason";
+    fail(reason);
   };
   // Pixels come in the file's own types, since a conversion to float would lose ids above 2^24.
   std::size_t pixel_size = 0;
