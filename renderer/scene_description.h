@@ -38,7 +38,7 @@ struct ImageDescription {
 struct Antialiasing {
   enum class Method { none, grid };
   Method method = Method::none;
-  int grid_size = 1;  ///< grid: grid_size^2 samples a pixel, at the centres of equal cells
+  int grid_size = 1;  ///< grid: grid_size^2 samples a pixel, at the centers of equal cells
 };
 
 enum class HighlightForm {
