@@ -153,9 +153,6 @@ struct GroupChange {
   const char* material;
 };
 
-/// Of a chunk: one every 16 bytes of text. More of them are no groups but an attack on memory.
-constexpr std::size_t kMaxChanges = kChunkBytes / 16;
-
 struct Findings {
   const char* error_place = nullptr;
   std::string error;
