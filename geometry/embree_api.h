@@ -33,11 +33,12 @@ using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, ReleaseGeom
 class Query {
  public:
   explicit Query(bool coherent) {
-    const RTCRayQueryFlags flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     rtcInitIntersectArguments(&intersect_);
-    intersect_.flags = flags;
     rtcInitOccludedArguments(&occluded_);
-    occluded_.flags = flags;
+    set_coherent(coherent);
+  }
+  void set_coherent(bool coherent) {
+    intersect_.flags = occluded_.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
   }
   void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersect_); }
   void intersect(RTCScene scene, const int* valid, RTCRayHit4& rays) {
@@ -61,6 +62,9 @@ class Query {
  public:
   explicit Query(bool coherent) {
     rtcInitIntersectContext(&context_);
+    set_coherent(coherent);
+  }
+  void set_coherent(bool coherent) {
     context_.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
   void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context_, &ray); }

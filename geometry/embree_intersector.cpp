@@ -12,6 +12,11 @@ namespace {
 
 using embree::Query;
 
+/// Packets are followed together when no ray strays from the first by more than 60 degrees. Measured: with glass and
+/// mirror spheres following all packets together is as fast, with a glass model of 870,000 triangles this is 3 to 10 %
+/// faster; rays in random directions lose half their speed when followed together.
+constexpr float kAlikeCosine = 0.5f;
+
 template <int Width>
 struct PacketTypes;
 template <>
@@ -63,10 +68,19 @@ void load_rays(const RayBatch& rays, std::size_t first, const float* max_distanc
   }
 }
 
+/// Whether a packet's rays run so much alike that following them together is faster. Lanes that are not live count.
+template <int Width, class Ray>
+bool runs_alike(const Ray& ray) {
+  float least = 1;
+  for (int i = 0; i < Width; ++i)
+    least = std::min(least, ray.dir_x[i] * ray.dir_x[0] + ray.dir_y[i] * ray.dir_y[0] + ray.dir_z[i] * ray.dir_z[0]);
+  return least >= kAlikeCosine;
+}
+
 template <int Width>
-void intersect_packets(RTCScene scene, const RayBatch& rays, bool coherent, const float* max_distance,
+void intersect_packets(RTCScene scene, const RayBatch& rays, Coherence coherence, const float* max_distance,
                        HitBatch& hits) noexcept {
-  Query query(coherent);
+  Query query(coherence == Coherence::coherent);
   alignas(64) int valid[Width];
   typename PacketTypes<Width>::RayHit packet;
   set_constant_fields<Width>(packet.ray);
@@ -76,6 +90,7 @@ void intersect_packets(RTCScene scene, const RayBatch& rays, bool coherent, cons
       packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
+    if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet.ray));
     query.intersect(scene, valid, packet);
     copy_lanes<Width>(hits.geometry + first, packet.hit.geomID);
     copy_lanes<Width>(hits.primitive + first, packet.hit.primID);
@@ -86,13 +101,14 @@ void intersect_packets(RTCScene scene, const RayBatch& rays, bool coherent, cons
 }
 
 template <int Width>
-void occluded_packets(RTCScene scene, const RayBatch& rays, bool coherent, std::uint8_t* occluded) noexcept {
-  Query query(coherent);
+void occluded_packets(RTCScene scene, const RayBatch& rays, Coherence coherence, std::uint8_t* occluded) noexcept {
+  Query query(coherence == Coherence::coherent);
   alignas(64) int valid[Width];
   typename PacketTypes<Width>::Ray packet;
   set_constant_fields<Width>(packet);
   for (std::size_t first = 0; first < rays.size; first += Width) {
     load_rays<Width>(rays, first, rays.max_distance, packet, valid);
+    if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet));
     query.occluded(scene, valid, packet);
     // Embree marks an occluded ray by tfar = -infinity; a lane that was not live counts as open.
     for (int i = 0; i < Width; ++i) occluded[first + i] = (packet.tfar[i] < 0) & (valid[i] != 0);
@@ -207,31 +223,29 @@ EmbreeIntersector::~EmbreeIntersector() = default;
 void EmbreeIntersector::intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept {
   // Planes first: Embree then looks no further than they are.
   const std::vector<Plane>& planes = state_->shapes->planes;
-  const bool coherent = coherence == Coherence::coherent;
   if (planes.empty()) {
     if (state_->wide)
-      intersect_packets<8>(state_->scene.get(), rays, coherent, rays.max_distance, hits);
+      intersect_packets<8>(state_->scene.get(), rays, coherence, rays.max_distance, hits);
     else
-      intersect_packets<4>(state_->scene.get(), rays, coherent, rays.max_distance, hits);
+      intersect_packets<4>(state_->scene.get(), rays, coherence, rays.max_distance, hits);
     return;
   }
   thread_local PlaneHits plane_hits;
   intersect_planes(planes, rays, plane_hits);
   if (state_->wide)
-    intersect_packets<8>(state_->scene.get(), rays, coherent, plane_hits.distance.data(), hits);
+    intersect_packets<8>(state_->scene.get(), rays, coherence, plane_hits.distance.data(), hits);
   else
-    intersect_packets<4>(state_->scene.get(), rays, coherent, plane_hits.distance.data(), hits);
+    intersect_packets<4>(state_->scene.get(), rays, coherence, plane_hits.distance.data(), hits);
   for (std::size_t i = 0; i < rays.size; ++i)
     if (hits.geometry[i] == kNoGeometry && plane_hits.plane[i] != kNoPlane)
       hits.set(i, {kPlaneGeometry, plane_hits.plane[i], 0, 0, plane_hits.distance[i]});
 }
 
 void EmbreeIntersector::occluded(const RayBatch& rays, Coherence coherence, std::uint8_t* occluded) const noexcept {
-  const bool coherent = coherence == Coherence::coherent;
   if (state_->wide)
-    occluded_packets<8>(state_->scene.get(), rays, coherent, occluded);
+    occluded_packets<8>(state_->scene.get(), rays, coherence, occluded);
   else
-    occluded_packets<4>(state_->scene.get(), rays, coherent, occluded);
+    occluded_packets<4>(state_->scene.get(), rays, coherence, occluded);
   const std::vector<Plane>& planes = state_->shapes->planes;
   if (planes.empty()) return;
   thread_local PlaneHits plane_hits;

@@ -9,10 +9,11 @@
 namespace raytree {
 
 /// What the caller knows of a batch. It decides the call a ray gets and, with it, the bits of its hit: so it is a
-/// function of the ray's class alone.
+/// function of the ray's class and, for mixed batches, of the rays beside it.
 enum class Coherence : std::uint8_t {
   coherent,   ///< neighbours are alike: eye rays in pixel order, shadow rays toward one light
-  incoherent  ///< reflected, refracted, anything else
+  mixed,      ///< reflected, refracted: some neighbours are alike, some not; judged packet by packet
+  incoherent  ///< neighbours have nothing in common
 };
 
 class RayIntersector {

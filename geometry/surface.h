@@ -60,16 +60,67 @@ inline float clearance(const Vec3f& normal, const Vec3f& largest) {
           kLeastError * std::max(largest.x, std::max(largest.y, largest.z)));
 }
 
-SurfacePoint sphere_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit);
-SurfacePoint disc_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit);
-SurfacePoint plane_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit);
+inline void sphere_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
+                           SurfacePoint& point) {
+  const Imath::V4f& sphere = shapes.spheres.center_radius[hit.primitive];
+  const Vec3d center(sphere.x, sphere.y, sphere.z);
+  const double radius = sphere.w;
 
-inline SurfacePoint triangle_surface(const TriangleMesh& mesh, const Hit& hit, bool texture) {
+  // The intersector says which sphere and which of its two sides; where exactly is solved again in double, by way of
+  // the ray's closest point to the center, which keeps its digits for far and small spheres.
+  const Vec3d o(origin), d(direction);
+  const Vec3d to_center = center - o;
+  // 1 / d.d to first order: d is unit but for float's rounding, whose square is under double's.
+  const double inverse_square = 2 - d.dot(d);
+  const double along = to_center.dot(d) * inverse_square;
+  const Vec3d closest = d * along - to_center;  // from the center
+  const double half_chord = std::sqrt(std::max(0.0, (radius * radius - closest.dot(closest)) * inverse_square));
+  const double near = along - half_chord, far = along + half_chord;
+  const bool takes_near = std::abs(near - hit.distance) <= std::abs(far - hit.distance);
+  const Vec3d from_center = closest + d * (takes_near ? -half_chord : half_chord);
+  // A ray that grazes the sphere within the intersector's error has no chord: its closest point lies off the surface.
+  const Vec3d normal = half_chord > 0 ? from_center * (1 / radius) : unit(from_center);
+
+  point.geometric_normal = point.shading_normal = Vec3f(normal);
+  point.position = Vec3f(center + normal * radius);
+  const double largest = std::max(std::abs(center.x), std::max(std::abs(center.y), std::abs(center.z)));
+  point.clearance = static_cast<float>(kSurfaceError * (largest + radius));
+  point.distance = static_cast<float>(std::max(0.0, takes_near ? near : far));
+}
+
+inline void flat_surface(const Vec3d& through, const Vec3d& normal, const Vec3f& origin, const Vec3f& direction,
+                         const Hit& hit, SurfacePoint& point) {
+  const Vec3d o(origin), d(direction);
+  const double slope = d.dot(normal);
+  const double distance = slope != 0 ? (through - o).dot(normal) / slope : double(hit.distance);
+  const Vec3d position = o + d * distance;
+
+  point.position = Vec3f(position);
+  point.geometric_normal = point.shading_normal = Vec3f(normal);
+  const auto largest = [&](int axis) {
+    return static_cast<float>(std::max(std::abs(position[axis]), std::abs(through[axis])));
+  };
+  point.clearance = clearance(point.geometric_normal, {largest(0), largest(1), largest(2)});
+  point.distance = static_cast<float>(distance);
+}
+
+inline void disc_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
+                         SurfacePoint& point) {
+  const Imath::V4f& disc = shapes.discs.center_radius[hit.primitive];
+  flat_surface(Vec3d(disc.x, disc.y, disc.z), Vec3d(shapes.discs.normal[hit.primitive]), origin, direction, hit, point);
+}
+
+inline void plane_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
+                          SurfacePoint& point) {
+  const Plane& plane = shapes.planes[hit.primitive];
+  flat_surface(plane.point, plane.normal, origin, direction, hit, point);
+}
+
+inline void triangle_surface(const TriangleMesh& mesh, const Hit& hit, bool texture, SurfacePoint& point) {
   const std::uint32_t* corner = &mesh.corners[std::size_t(hit.primitive) * 3];
   const Vec3f &a = mesh.positions[corner[0]], &b = mesh.positions[corner[1]], &c = mesh.positions[corner[2]];
   const float u = hit.u, v = hit.v, w = 1 - u - v;
 
-  SurfacePoint point;
   point.position = a * w + b * u + c * v;
   // The cross product of two edges, its two products apart: the larger they are beside their difference, the less its
   // direction is worth.
@@ -113,20 +164,29 @@ inline SurfacePoint triangle_surface(const TriangleMesh& mesh, const Hit& hit, b
     point.texture = mesh.texture_coordinates[index[0]] * w + mesh.texture_coordinates[index[1]] * u +
                     mesh.texture_coordinates[index[2]] * v;
   }
-  return point;
 }
 
 }  // namespace detail
 
 /// The surface that `hit` (of a ray from `origin` along unit `direction`) lies on. `texture`: whether texture
 /// coordinates are wanted.
+inline void find_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
+                         bool texture, SurfacePoint& point) {
+  if (hit.geometry >= kFirstMeshGeometry)
+    detail::triangle_surface(shapes.meshes[hit.geometry - kFirstMeshGeometry].mesh, hit, texture, point);
+  else if (hit.geometry == kSphereGeometry)
+    detail::sphere_surface(shapes, origin, direction, hit, point);
+  else if (hit.geometry == kDiscGeometry)
+    detail::disc_surface(shapes, origin, direction, hit, point);
+  else
+    detail::plane_surface(shapes, origin, direction, hit, point);
+}
+
 inline SurfacePoint surface_at(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
                                bool texture) {
-  if (hit.geometry >= kFirstMeshGeometry)
-    return detail::triangle_surface(shapes.meshes[hit.geometry - kFirstMeshGeometry].mesh, hit, texture);
-  if (hit.geometry == kSphereGeometry) return detail::sphere_surface(shapes, origin, direction, hit);
-  if (hit.geometry == kDiscGeometry) return detail::disc_surface(shapes, origin, direction, hit);
-  return detail::plane_surface(shapes, origin, direction, hit);
+  SurfacePoint point;
+  find_surface(shapes, origin, direction, hit, texture, point);
+  return point;
 }
 
 /// Origin of a ray that leaves `point` to the side of `normal` (unit, geometric, pointing to that side): clear of the

@@ -21,10 +21,9 @@ struct PendingRay {
   Vec3f origin;
   float allowance;  ///< what may still be cut off below it, radiance
   Vec3f direction;
-  std::uint32_t sample;      ///< in the chunk
-  Rgb weight;                ///< of what it brings in its sample
-  std::uint32_t level : 31;  ///< the eye ray is 1
-  std::uint32_t refracted : 1;
+  std::uint32_t sample;  ///< in the chunk
+  Rgb weight;            ///< of what it brings in its sample
+  std::uint32_t level;   ///< the eye ray is 1
 };
 static_assert(sizeof(PendingRay) == 48);
 
@@ -36,6 +35,27 @@ struct BatchPoint {
   std::uint32_t sample;
   std::uint32_t level;
 };
+
+/// What the two children of a hit may cut off below them, and which of them is itself cut.
+struct Shares {
+  float reflected, refracted;
+  bool cuts_reflected, cuts_refracted;
+};
+
+/// Divides a ray's allowance over its children, whose bounds are given (0: no such child). The child with the smaller
+/// bound is judged first, and what it leaves of its half passes to the other; so the cuts below a ray never exceed its
+/// allowance. An absent child takes nothing, since its bound is 0 and leaves all.
+inline Shares divided_allowance(float allowance, float reflected_bound, float refracted_bound) {
+  const bool reflected_first = reflected_bound <= refracted_bound;
+  const float smaller = reflected_first ? reflected_bound : refracted_bound;
+  const float larger = reflected_first ? refracted_bound : reflected_bound;
+  const float half = allowance / 2;
+  const bool cuts_smaller = smaller <= half;
+  const float rest = cuts_smaller ? allowance - smaller : half;
+  const bool cuts_larger = larger <= rest;
+  if (reflected_first) return {half, rest, cuts_smaller, cuts_larger};
+  return {rest, half, cuts_larger, cuts_smaller};
+}
 
 constexpr int kTilePixels = kTileSize * kTileSize;
 
@@ -65,6 +85,8 @@ struct TileTracer::State {
         pixel_of_sample(kBatchSize),
         center_of_pixel(kBatchSize) {
     pending.reserve(4 * kBatchSize);
+    reflected_rays.reserve(kBatchSize);
+    refracted_rays.reserve(kBatchSize);
     const ChannelSet& channels = options.channels;
     counts_rays = channels.has(ChannelGroup::ray_count);
     records_first_hit = channels.has(ChannelGroup::alpha) || channels.has(ChannelGroup::depth) ||
@@ -93,7 +115,8 @@ struct TileTracer::State {
   std::span<const BatchPoint> batch_points() const { return {points.data(), point_count}; }
   void add_lights();
   void spawn();
-  void spawn_child(const BatchPoint& point, const Vec3f& direction, const Rgb& weight, float allowance, bool refracted);
+  void cut(std::uint32_t sample, const Rgb& bound);
+  void add_children(RayKind kind, std::vector<PendingRay>& children);
   void record_first_hit(const BatchPoint& point, const Hit& hit, ShapeId shape);
   void resolve_tile(int x0, int y0, int samples_per_pixel);
 
@@ -116,6 +139,9 @@ struct TileTracer::State {
   std::size_t point_count = 0;
   std::vector<BatchPoint> points;   ///< hits of the batch under way
   std::vector<PendingRay> pending;  ///< the newest rays are traced first
+  /// What the batch under way spawns, before it joins the pending rays: apart, so that neighbours in a packet run much
+  /// the same way.
+  std::vector<PendingRay> reflected_rays, refracted_rays;
 
   // The chunk of samples under way.
   std::vector<int> pixel_of;  ///< [column or row of samples in the tile] -> of pixels
@@ -172,7 +198,7 @@ void TileTracer::State::add_eye_sample(float x, float y, int pixel, bool center)
   Vec3f origin, direction;
   scene.camera.ray(x, y, origin, direction);
   rays.set(i, origin, direction, std::numeric_limits<float>::infinity());
-  eye_rays[i] = {origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint32_t>(i), Rgb(1), 1, 0};
+  eye_rays[i] = {origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint32_t>(i), Rgb(1), 1};
   radiance[i] = truncation[i] = Rgb();
   ray_counts[i] = 1;
   pixel_of_sample[i] = static_cast<std::uint16_t>(pixel);
@@ -197,7 +223,7 @@ bool TileTracer::State::finish_chunk() {
       if (kFeatures.ray_count_channel && counts_rays) ++ray_counts[ray.sample];
     }
     rays.size = count;
-    trace_batch(Coherence::incoherent, false);
+    trace_batch(Coherence::mixed, false);
   }
   for (std::size_t i = 0; i < chunk_size; ++i) {
     const int pixel = pixel_of_sample[i];
@@ -225,9 +251,20 @@ void TileTracer::State::trace_batch(Coherence coherence, bool eye) {
   if (!eye) pending.resize(pending.size() - rays.size);
   add_lights();
   spawn();
+  add_children(RayKind::reflected, reflected_rays);
+  add_children(RayKind::refracted, refracted_rays);
   const double shadow_seconds = statistics.intersection_seconds - intersection_before;
   statistics.shading_seconds += seconds_since(hit) - shadow_seconds;
   statistics.intersection_seconds += std::chrono::duration<double>(hit - start).count();
+}
+
+void TileTracer::State::add_children(RayKind kind, std::vector<PendingRay>& children) {
+  if (children.empty()) return;
+  statistics.rays[static_cast<int>(kind)] += children.size();
+  for (const PendingRay& child : children)
+    statistics.deepest_level = std::max(statistics.deepest_level, static_cast<int>(child.level));
+  pending.insert(pending.end(), children.begin(), children.end());
+  children.clear();
 }
 
 void TileTracer::State::collect_hits(bool eye) {
@@ -252,7 +289,7 @@ void TileTracer::State::collect_hits(bool eye) {
     const ShapeId shape = shapes.shape_of(hit.geometry, hit.primitive);
     const Material& material = scene.materials[scene.shape_materials[shape]];
     BatchPoint& point = points[p];
-    point.shading.surface = surface_at(shapes, ray.origin, ray.direction, hit, wants_texture);
+    find_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     complete_shading_point(point.shading, ray.direction, material);
     point.weight = ray.weight;
     point.allowance = ray.allowance;
@@ -326,54 +363,45 @@ void TileTracer::State::add_lights() {
 }
 
 void TileTracer::State::spawn() {
+  std::uint64_t branches_at_limit = 0;
   for (const BatchPoint& point : batch_points()) {
     const Material& material = *point.shading.material;
     if (!material.has_reflection && !material.has_transmission) continue;
     const Branches children = branches(point.shading);
-    Rgb weights[2] = {point.weight * children.reflected_weight, point.weight * children.refracted_weight};
-    const bool alive[2] = {!is_black(weights[0]), !is_black(weights[1])};
-    if (static_cast<int>(point.level) >= settings.depth) {
-      statistics.branches_at_depth_limit += alive[0] + alive[1];
+    const Rgb reflected_weight = point.weight * children.reflected_weight;
+    const Rgb refracted_weight = point.weight * children.refracted_weight;
+    const bool reflects = !is_black(reflected_weight), refracts = !is_black(refracted_weight);
+    const int level = static_cast<int>(point.level);
+    if (level >= settings.depth) {
+      branches_at_limit += reflects + refracts;
       continue;
     }
-    // The allowance is divided over the children; the child with the smaller bound is judged first, and what it leaves
-    // of its share passes to the other.
-    const Rgb below = scene.bound(settings.depth - static_cast<int>(point.level) - 1);
-    const Rgb bounds[2] = {weights[0] * below, weights[1] * below};
-    float allowance = point.allowance;
-    float shares[2] = {allowance, allowance};
-    bool cut[2] = {false, false};
-    if (alive[0] && alive[1]) {
-      const int smaller = max_channel(bounds[0]) <= max_channel(bounds[1]) ? 0 : 1;
-      const float half = allowance / 2;
-      const float cost = max_channel(bounds[smaller]);
-      cut[smaller] = cost <= half;
-      shares[smaller] = half;
-      shares[1 - smaller] = cut[smaller] ? allowance - cost : half;
-      cut[1 - smaller] = max_channel(bounds[1 - smaller]) <= shares[1 - smaller];
-    } else {
-      for (int i = 0; i < 2; ++i) cut[i] = max_channel(bounds[i]) <= allowance;
+    const Rgb below = scene.bound(settings.depth - level - 1);
+    const Rgb reflected_bound = reflected_weight * below, refracted_bound = refracted_weight * below;
+    const Shares shares =
+        divided_allowance(point.allowance, max_channel(reflected_bound), max_channel(refracted_bound));
+    const SurfacePoint& surface = point.shading.surface;
+    if (reflects) {
+      if (shares.cuts_reflected)
+        cut(point.sample, reflected_bound);
+      else
+        reflected_rays.push_back({offset_origin(surface, surface.geometric_normal), shares.reflected,
+                                  children.reflected, point.sample, reflected_weight, point.level + 1});
     }
-    for (int i = 0; i < 2; ++i) {
-      if (!alive[i]) continue;
-      if (cut[i]) {
-        if (kFeatures.truncation_channel) truncation[point.sample] += bounds[i];
-        ++statistics.branches_cut;
-      } else {
-        spawn_child(point, i == 0 ? children.reflected : children.refracted, weights[i], shares[i], i == 1);
-      }
+    if (refracts) {
+      if (shares.cuts_refracted)
+        cut(point.sample, refracted_bound);
+      else
+        refracted_rays.push_back({offset_origin(surface, -surface.geometric_normal), shares.refracted,
+                                  children.refracted, point.sample, refracted_weight, point.level + 1});
     }
   }
+  statistics.branches_at_depth_limit += branches_at_limit;
 }
 
-void TileTracer::State::spawn_child(const BatchPoint& point, const Vec3f& direction, const Rgb& weight, float allowance,
-                                    bool refracted) {
-  const SurfacePoint& surface = point.shading.surface;
-  const Vec3f side = refracted ? -surface.geometric_normal : surface.geometric_normal;
-  pending.push_back({offset_origin(surface, side), allowance, direction, point.sample, weight,
-                     (point.level + 1) & 0x7fffffffu, refracted});
-  ++statistics.rays[static_cast<int>(refracted ? RayKind::refracted : RayKind::reflected)];
-  statistics.deepest_level = std::max(statistics.deepest_level, static_cast<int>(point.level) + 1);
+void TileTracer::State::cut(std::uint32_t sample, const Rgb& bound) {
+  if (kFeatures.truncation_channel) truncation[sample] += bound;
+  ++statistics.branches_cut;
 }
 
 void TileTracer::State::record_first_hit(const BatchPoint& point, const Hit&, ShapeId shape) {

@@ -24,7 +24,6 @@ struct ShadingPoint {
   bool leaving = false;                ///< the ray hit the surface from behind: it is leaving the inside
 };
 
-/// Completes a point whose surface is set, in place.
 inline void complete_shading_point(ShadingPoint& point, const Vec3f& direction, const Material& material) {
   point.direction = direction;
   point.material = &material;
@@ -85,7 +84,7 @@ struct Branches {
 };
 
 /// R and P with k_s and k_t, or with k_s F and k_t (1 - F). At total internal reflection T = 0; F = 1.
-inline Branches branches(const ShadingPoint& point) {
+[[gnu::always_inline]] inline Branches branches(const ShadingPoint& point) {
   const Material& material = *point.material;
   const Vec3f& side = point.surface.geometric_normal;
   Vec3f normal = point.surface.shading_normal;
