@@ -400,7 +400,7 @@ void TileTracer::State::spawn() {
 }
 
 void TileTracer::State::cut(std::uint32_t sample, const Rgb& bound) {
-  if (kFeatures.truncation_channel) truncation[sample] += bound;
+  if (kFeatures.truncation_channel && records_truncation) truncation[sample] += bound;
   ++statistics.branches_cut;
 }
 

@@ -160,8 +160,9 @@ OIIO::ImageSpec spec_of(const RaytreeImage& image) {
     if (!same_type)
       for (std::size_t i = 0; i < image.plane_count; ++i)
         spec.channelformats.push_back(oiio_type(image.planes[i].type));
-    // Measured: two thirds of the time of 16-line blocks (zip) at 3 % more bytes; higher levels gain as little.
-    spec.attribute("compression", "zips:2");
+    // Measured on a 1920 x 1080 float picture: half the time of the fastest deflate (zips:1) at 27 % more bytes, and as
+    // fast as none at 16 % fewer.
+    spec.attribute("compression", "rle");
     if (std::string_view(image.color_space) == "linear_rec709") {
       const float rec709[8] = {.64f, .33f, .30f, .60f, .15f, .06f, .3127f, .3290f};
       spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), rec709);
