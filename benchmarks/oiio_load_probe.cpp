@@ -4,7 +4,7 @@
 #include <cstdio>
 
 int main() {
-  if (dlopen(RAYTREE_OIIO_LIBRARY, RTLD_NOW | RTLD_LOCAL) != nullptr) return 0;
+  if (dlopen(RAYTREE_OIIO_LIBRARY, RTLD_LAZY | RTLD_LOCAL) != nullptr) return 0;
   std::fprintf(stderr, "%s\n", dlerror());
   return 1;
 }

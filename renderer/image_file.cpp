@@ -84,7 +84,7 @@ class Module {
   void load() {
     problem_ = "the module for image files cannot be opened; tried";
     for (const std::string& path : module_candidates()) {
-      void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+      void* library = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
       if (library == nullptr) {
         const char* reason = ::dlerror();
         problem_ += "\n  " + std::string(reason != nullptr ? reason : path);
