@@ -18,6 +18,7 @@ struct Features {
   bool first_hit_channels = kOptionalFeatures;
   bool ray_count_channel = kOptionalFeatures;
   bool truncation_channel = kOptionalFeatures;
+  bool uneven_lights = kOptionalFeatures;  ///< falloff and cones
   bool halfway_highlights = kOptionalFeatures;
 };
 inline constexpr Features kFeatures;

@@ -33,7 +33,7 @@ float channel_limit(float local, float recursion) {
 RadianceBound::RadianceBound(std::span<const Material> materials, std::span<const Light> lights,
                              const BackgroundLight& background, Rgb ambient, int depth) {
   Rgb light_sum;
-  for (const Light& light : lights) light_sum += light.color;
+  for (const Light& light : lights) light_sum += light.color * light.largest_strength();
 
   std::vector<Rgb> locals, recursions;
   const Rgb seen = background.largest() * kRounding;

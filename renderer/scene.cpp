@@ -1,5 +1,7 @@
 #include "renderer/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -59,6 +61,10 @@ std::vector<std::string> features_in_use(const Scene& scene) {
     if (material.needs_texture) features.insert("texture coordinates");
   }
   if (render.shadows && !scene.lights.empty()) features.insert("shadows");
+  for (const Light& light : scene.lights) {
+    if (light.falloff != Falloff::none) features.insert("light falloff");
+    if (light.has_cone) features.insert("spot lights");
+  }
   if (render.distance_attenuation > 0) features.insert("distance attenuation");
   if (render.cutoff > 0 && (features.count("reflection") || features.count("refraction"))) features.insert("cutoff");
   if (render.antialias.method == Antialiasing::Method::grid) features.insert("antialiasing (grid)");
@@ -76,12 +82,33 @@ std::vector<std::string> features_in_use(const Scene& scene) {
 }
 
 void check_light(const LightDescription& light, const SourceLocation& where) {
-  const auto* directional = std::get_if<DirectionalLight>(&light.kind);
-  const Vec3d place = directional != nullptr ? directional->direction : std::get<PointLight>(light.kind).position;
-  const double length = place.length();
-  if (!std::isfinite(length)) throw Error(ErrorKind::bad_input, where, "the light's place is not finite");
-  if (directional != nullptr && !(length > 0))
-    throw Error(ErrorKind::bad_input, where, "a directional light needs a direction");
+  const auto check_place = [&](const Vec3d& position) {
+    if (!std::isfinite(position.length())) throw Error(ErrorKind::bad_input, where, "the light's place is not finite");
+  };
+  const auto check_direction = [&](const Vec3d& direction) {
+    const double length = direction.length();
+    if (!std::isfinite(length) || !(length > 0))
+      throw Error(ErrorKind::bad_input, where, "the light needs a direction that is finite and not zero");
+  };
+  const auto check_falloff = [&](double least_distance) {
+    // As float it must not be 0, nor its inverse square infinite.
+    if (!(least_distance >= kLeastLightDistance))
+      throw Error(ErrorKind::bad_input, where,
+                  fmt::format("least_distance {} is less than {}", least_distance, kLeastLightDistance));
+  };
+  if (const auto* directional = std::get_if<DirectionalLight>(&light.kind)) check_direction(directional->direction);
+  if (const auto* point = std::get_if<PointLight>(&light.kind)) {
+    check_place(point->position);
+    check_falloff(point->least_distance);
+  }
+  if (const auto* spot = std::get_if<SpotLight>(&light.kind)) {
+    check_place(spot->position);
+    check_direction(spot->direction);
+    check_falloff(spot->least_distance);
+    if (spot->inner_angle > spot->angle)
+      throw Error(ErrorKind::bad_input, where,
+                  fmt::format("inner_angle {} is larger than angle {}", spot->inner_angle, spot->angle));
+  }
 }
 
 void warn_of_open_glass(const Scene& scene, Warnings& warnings) {

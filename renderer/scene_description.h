@@ -70,13 +70,29 @@ using Background = std::variant<ConstantBackground, GradientBackground>;
 struct DirectionalLight {
   Vec3d direction{0, -1, 0};  ///< the way the light travels; need not be unit, must not be zero
 };
+/// Light that falls off with the square from nearer than this could leave float's range.
+inline constexpr double kLeastLightDistance = 1e-9;
+
+/// How light weakens with the distance d from its source: times 1, 1 / d or 1 / d^2, d in scene units.
+enum class Falloff { none, linear, inverse_square };
 struct PointLight {
   Vec3d position{0, 10, 0};
+  Falloff falloff = Falloff::none;  ///< Whitted's sums know none
+  double least_distance = 1;        ///< nearer than this the light grows no stronger; scene units, positive
+};
+/// A point light within a cone: full inside `inner_angle`, none outside `angle`, smooth between.
+struct SpotLight {
+  Vec3d position{0, 10, 0};
+  Vec3d direction{0, -1, 0};  ///< the cone's axis, the way the light travels; any length but zero
+  double angle = 30;          ///< between axis and border, degrees, in (0, 180]
+  double inner_angle = 25;    ///< degrees, at most `angle`
+  Falloff falloff = Falloff::none;
+  double least_distance = 1;
 };
 struct LightDescription {
   std::string name;
-  Rgb color{1, 1, 1};  ///< intensity I of Whitted's sums (no falloff with distance)
-  std::variant<DirectionalLight, PointLight> kind;
+  Rgb color{1, 1, 1};  ///< intensity I of Whitted's sums; with falloff, that at distance 1
+  std::variant<DirectionalLight, PointLight, SpotLight> kind;
 };
 
 /// A checkerboard over two coordinates of the hit point.

@@ -73,6 +73,14 @@ struct EnumTable<HighlightForm> {
        {E::halfway, "halfway", "angle between normal and halfway vector, Whitted 1980, eq. 1"}}};
 };
 template <>
+struct EnumTable<Falloff> {
+  using E = Falloff;
+  static constexpr std::array<EnumEntry<E>, 3> entries{
+      {{E::none, "none", "the same at every distance"},
+       {E::linear, "linear", "1 / d, at most 1 / least_distance"},
+       {E::inverse_square, "inverse_square", "1 / d^2, at most 1 / least_distance^2"}}};
+};
+template <>
 struct EnumTable<CheckerPattern::Plane> {
   using E = CheckerPattern::Plane;
   static constexpr std::array<EnumEntry<E>, 4> entries{{{E::xz, "xz", "world x and z, a floor"},
@@ -110,7 +118,11 @@ struct Alternative<DirectionalLight> {
 };
 template <>
 struct Alternative<PointLight> {
-  static constexpr std::string_view name = "point", text = "light from a point, the same at every distance";
+  static constexpr std::string_view name = "point", text = "light from a point, to all sides";
+};
+template <>
+struct Alternative<SpotLight> {
+  static constexpr std::string_view name = "spot", text = "light from a point, within a cone";
 };
 template <>
 struct Alternative<CheckerPattern> {
@@ -266,15 +278,48 @@ void visit_fields(Visitor& visit, T& light) {
         light.direction);
 }
 
+/// What lights that stand somewhere have in common.
+template <class Visitor, class Light>
+void visit_falloff(Visitor& visit, Light& light) {
+  visit(Field{.key = "falloff", .text = "How the light weakens with distance d"}, light.falloff);
+  visit(Field{.key = "least_distance",
+              .text = "With falloff: nearer than this the light grows no stronger",
+              .unit = "scene units",
+              .range = {kLeastLightDistance}},
+        light.least_distance);
+}
+
 template <class Visitor, Is<PointLight> T>
 void visit_fields(Visitor& visit, T& light) {
   visit(Field{.key = "position", .text = "Where the light is", .unit = "scene units"}, light.position);
+  visit_falloff(visit, light);
+}
+
+template <class Visitor, Is<SpotLight> T>
+void visit_fields(Visitor& visit, T& light) {
+  visit(Field{.key = "position", .text = "Where the light is", .unit = "scene units"}, light.position);
+  visit(Field{.key = "direction",
+              .text = "The cone's axis, the way the light travels; any length but zero",
+              .nonzero = true},
+        light.direction);
+  visit(Field{.key = "angle",
+              .text = "Between the cone's axis and its border, where the light ends",
+              .unit = "degrees",
+              .range = {0, 180, true}},
+        light.angle);
+  visit(Field{.key = "inner_angle",
+              .text = "Up to which the light is full; at most `angle`, between the two it fades",
+              .unit = "degrees",
+              .range = {0, 180}},
+        light.inner_angle);
+  visit_falloff(visit, light);
 }
 
 template <class Visitor, Is<LightDescription> T>
 void visit_fields(Visitor& visit, T& light) {
   visit.tagged(Field{.key = kTypeKey, .text = "Kind of light", .required = true}, light.kind);
-  visit(Field{.key = "color", .text = "Intensity, without falloff over distance", .range = kNotNegative}, light.color);
+  visit(Field{.key = "color", .text = "Intensity; of a light with falloff, that at distance 1", .range = kNotNegative},
+        light.color);
 }
 
 template <class Visitor, Is<CheckerPattern> T>

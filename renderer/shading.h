@@ -48,7 +48,7 @@ struct LocalLight {
   Rgb diffuse, highlight;
   Vec3f direction;   ///< unit, to the light
   float distance;    ///< to the light; infinity: directional
-  bool lit = false;  ///< the light stands on the side that is seen, by both normals
+  bool lit = false;  ///< the light stands on the side that is seen, by both normals, and shines this way
 };
 
 /// k_d (N.L) and W (R.L)^n (Phong 1973, eq. 4.5) or W (N.H)^n (Whitted 1980, eq. 1), times the light's color.
@@ -58,9 +58,15 @@ inline LocalLight local_light(const ShadingPoint& point, const Light& light, Hig
   const Vec3f& normal = point.surface.shading_normal;
   const float cosine = normal.dot(result.direction);
   if (!(cosine > 0) || !(point.surface.geometric_normal.dot(result.direction) > 0)) return result;
+  Rgb color = light.color;
+  if (kFeatures.uneven_lights && !light.even) {
+    const float strength = light.strength(result.direction, result.distance);
+    if (!(strength > 0)) return result;
+    color *= strength;
+  }
   result.lit = true;
   const Material& material = *point.material;
-  result.diffuse = light.color * point.diffuse * std::min(cosine, 1.0f);
+  result.diffuse = color * point.diffuse * std::min(cosine, 1.0f);
   if (material.has_highlight) {
     float base;
     if (!kFeatures.halfway_highlights || form == HighlightForm::reflected) {
@@ -71,8 +77,7 @@ inline LocalLight local_light(const ShadingPoint& point, const Light& light, Hig
       const float square = halfway.dot(halfway);
       base = square > 0 ? normal.dot(halfway) / std::sqrt(square) : 0.0f;
     }
-    if (base > 0)
-      result.highlight = light.color * material.highlight * std::pow(std::min(base, 1.0f), material.exponent);
+    if (base > 0) result.highlight = color * material.highlight * std::pow(std::min(base, 1.0f), material.exponent);
   }
   return result;
 }

@@ -77,9 +77,19 @@ class RandomScenes {
       }
     }
     const int lights = integer(0, 3);
-    for (int i = 0; i < lights; ++i)
-      scene.lights.push_back(chance(0.5) ? directional_light(point(1) + Vec3d(0, -1.5, 0), color(1.5))
-                                         : point_light(point(6), color(1.5)));
+    const auto falloff = [&] { return static_cast<Falloff>(integer(0, 2)); };
+    for (int i = 0; i < lights; ++i) {
+      const int kind = integer(0, 2);
+      if (kind == 0) scene.lights.push_back(directional_light(point(1) + Vec3d(0, -1.5, 0), color(1.5)));
+      if (kind == 1) scene.lights.push_back(light_of(PointLight{point(6), falloff(), uniform(0.3, 4)}, color(1.5)));
+      if (kind == 2) {
+        const double angle = uniform(5, 120);
+        const Vec3d position = point(6);
+        scene.lights.push_back(
+            light_of(SpotLight{position, point(1) - position, angle, uniform(0, angle), falloff(), uniform(0.3, 4)},
+                     color(1.5)));
+      }
+    }
     return scene;
   }
 

@@ -40,8 +40,13 @@ inline bool equal(const DirectionalLight& a, const DirectionalLight& b) {
   return direction == b.direction;
 }
 inline bool equal(const PointLight& a, const PointLight& b) {
-  const auto& [position] = a;
-  return position == b.position;
+  const auto& [position, falloff, least_distance] = a;
+  return position == b.position && falloff == b.falloff && least_distance == b.least_distance;
+}
+inline bool equal(const SpotLight& a, const SpotLight& b) {
+  const auto& [position, direction, angle, inner_angle, falloff, least_distance] = a;
+  return position == b.position && direction == b.direction && angle == b.angle && inner_angle == b.inner_angle &&
+         falloff == b.falloff && least_distance == b.least_distance;
 }
 inline bool equal(const CheckerPattern& a, const CheckerPattern& b) {
   const auto& [even, odd, size, plane, offset] = a;

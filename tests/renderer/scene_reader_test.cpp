@@ -133,12 +133,13 @@ TEST(SceneReader, RefusalsSayWhatWhereAndWhatWouldBeRight) {
             "s.json:4: materials.glass: unknown key \"difuse\"; known keys: diffuse, ambient, highlight, reflection, "
             "transmission, index_of_refraction, fresnel (did you mean \"diffuse\"?)");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\n\"type\": \"direct\"}}"),
-            "s.json:3: lights.sun.type: unknown type \"direct\"; known types: directional, point (did you mean "
+            "s.json:3: lights.sun.type: unknown type \"direct\"; known types: directional, point, spot (did you mean "
             "\"directional\"?)");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\"tpye\": \"point\"}}"),
-            "s.json:2: lights.sun: missing key \"type\"; one of: directional, point (there is \"tpye\")");
+            "s.json:2: lights.sun: missing key \"type\"; one of: directional, point, spot (there is \"tpye\")");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\"type\": \"point\", \"direction\": [0, -1, 0]}}"),
-            "s.json:2: lights.sun: unknown key \"direction\"; known keys: type, position, color");
+            "s.json:2: lights.sun: unknown key \"direction\"; known keys: type, position, falloff, least_distance, "
+            "color");
   EXPECT_EQ(refusal("\"shapes\": {\"a b\": {\"type\": \"sphere\",\n\"radius\": 0}}"),
             "s.json:3: shapes.\"a b\".radius: 0 is out of range: must be greater than 0");
   EXPECT_EQ(
@@ -649,7 +650,8 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(ConstantBackground{}), 1);
   EXPECT_EQ(count(GradientBackground{}), 3);
   EXPECT_EQ(count(DirectionalLight{}), 1);
-  EXPECT_EQ(count(PointLight{}), 1);
+  EXPECT_EQ(count(PointLight{}), 3);
+  EXPECT_EQ(count(SpotLight{}), 6);
   EXPECT_EQ(count(LightDescription{}), 3 - 1) << "without name";
   EXPECT_EQ(count(CheckerPattern{}), 5);
   EXPECT_EQ(count(HighlightDescription{}), 2);

@@ -62,6 +62,77 @@ TEST(Shading, APointLightShinesFromWhereItStands) {
     }
 }
 
+TEST(Shading, FalloffIsThatOfTheDistanceAndStopsAtTheLeastOne) {
+  SceneDescription scene = dark_scene(16, front_camera(4));
+  scene.materials = {material("m", Rgb(1))};
+  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "m")};
+  const Vec3d place(0.5, -0.25, 1.5);
+  int held_back = 0;
+  for (const double least : {1e-3, 1.75})
+    for (const auto& [falloff, power] : {std::pair(Falloff::linear, 1), std::pair(Falloff::inverse_square, 2)}) {
+      scene.lights = {light_of(PointLight{place, falloff, least}, Rgb(2))};
+      const RenderResult result = rendered(scene);
+      for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+          const Vec3d to_light = place - Vec3d((x + 0.5 - 8) * 0.25, (8 - y - 0.5) * 0.25, 0);
+          held_back += to_light.length() < least;
+          const double weakened = std::pow(std::max(to_light.length(), least), -power);
+          EXPECT_NEAR(color_at(result.film, x, y).g, 2 * weakened * unit(to_light).z, 4 * kFloatError) << x << " " << y;
+        }
+    }
+  EXPECT_GT(held_back, 50) << "some points lie nearer than the least distance";
+}
+
+TEST(Shading, ASpotShinesFullInsideItsConeNotAtAllOutsideAndSmoothlyBetween) {
+  SceneDescription scene = dark_scene(64, front_camera(4));
+  scene.materials = {material("m", Rgb(1))};
+  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "m")};
+  const Vec3d place(0.25, 0.5, 2), travels(-0.1, -0.2, -1);
+  constexpr double kDegree = 0.017453292519943295;
+  for (const double inner : {12.0, 24.0, 35.0}) {
+    constexpr double kBorder = 35;
+    scene.lights = {light_of(SpotLight{place, travels * 3, kBorder, inner, Falloff::none, 1})};
+    const RenderResult result = rendered(scene);
+    int full = 0, dark = 0, between = 0;
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const Vec3d to_light = unit(place - Vec3d((x + 0.5 - 32) / 16, (32 - y - 0.5) / 16, 0));
+        const double cosine = -to_light.dot(unit(travels)), border = std::cos(kBorder * kDegree);
+        // A hard border falls within a pixel's rounding to one side or the other.
+        if (inner == kBorder && std::abs(cosine - border) < 1e-5) continue;
+        const double t = std::clamp((cosine - border) / std::max(std::cos(inner * kDegree) - border, 1e-6), 0.0, 1.0);
+        const double share = t * t * (3 - 2 * t);
+        (share == 0 ? dark : share == 1 ? full : between) += 1;
+        EXPECT_NEAR(color_at(result.film, x, y).r, share * to_light.z, 1e-5) << inner << ": " << x << " " << y;
+      }
+    EXPECT_GT(full, 100);
+    EXPECT_GT(dark, 100);
+    EXPECT_EQ(between > 100, inner < kBorder);
+  }
+  // What is behind the light is dark even where a cone of more than 90 degrees would reach it from the front.
+  scene.lights = {light_of(SpotLight{place, {0, 0, 1}, 60, 60, Falloff::none, 1})};
+  expect_color(color_at(rendered(scene).film, 32, 32), Rgb(0), 0);
+}
+
+TEST(Shading, LightsThatCannotShineAreRefusedByName) {
+  SceneDescription scene = dark_scene(4, front_camera(4));
+  const auto message = [&](auto kind) {
+    scene.lights = {light_of(kind)};
+    scene.lights[0].name = "lamp";
+    try {
+      rendered(scene);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_NE(message(SpotLight{{0, 0, 2}, {0, 0, 0}}).find("lights.lamp"), std::string::npos);
+  EXPECT_NE(message(SpotLight{{0, 0, 2}, {0, 0, -1}, 20, 30}).find("inner_angle 30 is larger than angle 20"),
+            std::string::npos);
+  EXPECT_NE(message(PointLight{{0, 0, 2}, Falloff::linear, 0}).find("least_distance 0"), std::string::npos);
+  EXPECT_EQ(message(SpotLight{{0, 0, 2}, {0, 0, -1}, 20, 20}), "accepted");
+}
+
 TEST(Shading, LightsAddUpAndASurfaceIsLitFromTheSideThatIsSeen) {
   SceneDescription scene = dark_scene(4, front_camera(1));
   scene.materials = {material("m", Rgb(0.5f))};

@@ -123,6 +123,13 @@ inline LightDescription point_light(const Vec3d& position, Rgb color = Rgb(1)) {
   return light;
 }
 
+inline LightDescription light_of(std::variant<DirectionalLight, PointLight, SpotLight> kind, Rgb color = Rgb(1)) {
+  LightDescription light;
+  light.color = color;
+  light.kind = std::move(kind);
+  return light;
+}
+
 /// Looks along -z from `distance` at a window of height `height` about the origin: pixel (x, y)'s center lies at
 /// ((x + .5 - size / 2) height / size, (size / 2 - y - .5) height / size).
 inline CameraDescription front_camera(double height, double distance = 10) {
