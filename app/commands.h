@@ -10,5 +10,6 @@ int info_command(const Words& words);
 int scenes_command(const Words& words);
 int schema_command(const Words& words);
 int ocio_command(const Words& words);
+int bench_command(const Words& words);
 
 }  // namespace raytree::app

@@ -15,6 +15,7 @@
 #include "app/render_options.h"
 #include "app/suggestion.h"
 #include "renderer/scene.h"
+#include "renderer/scene_fields.h"
 
 namespace raytree::app {
 namespace {
@@ -70,7 +71,7 @@ Json json_of(const Bounds3d& box) {
 }
 
 const char* kind_of(const LightDescription& light) {
-  return std::holds_alternative<DirectionalLight>(light.kind) ? "directional" : "point";
+  return std::visit([]<class Kind>(const Kind&) { return Alternative<Kind>::name.data(); }, light.kind);
 }
 
 std::string camera_name(const Scene& scene, const SceneFlags& flags) {

@@ -28,6 +28,7 @@ constexpr Command kCommands[] = {
     {"info", "Say what is in a scene, and what it will take, without rendering", info_command},
     {"scenes", "List the built-in scenes", scenes_command},
     {"schema", "Print the JSON Schema of scene files", schema_command},
+    {"bench", "Measure how fast a scene's rays are intersected", bench_command},
     {"ocio", "List displays and views, or check the color transforms", ocio_command},
 };
 

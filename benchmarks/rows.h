@@ -25,14 +25,16 @@ std::vector<Figure> measure_large(const MeasureContext& context);
 std::vector<Figure> measure_idle(const MeasureContext& context);
 std::vector<Figure> measure_time_split(const MeasureContext& context);
 std::vector<Figure> measure_loading(const MeasureContext& context);
+std::vector<Figure> measure_intersection_overhead(const MeasureContext& context);
 
 struct Row {
   const char* name;
   std::vector<Figure> (*measure)(const MeasureContext&);
 };
 inline constexpr Row kRows[] = {
-    {"floor", measure_floor}, {"waves", measure_waves}, {"threads", measure_threads},  {"start", measure_start},
-    {"large", measure_large}, {"idle", measure_idle},   {"split", measure_time_split}, {"loading", measure_loading},
+    {"floor", measure_floor},      {"waves", measure_waves},     {"threads", measure_threads},
+    {"start", measure_start},      {"large", measure_large},     {"idle", measure_idle},
+    {"split", measure_time_split}, {"loading", measure_loading}, {"bench", measure_intersection_overhead},
 };
 
 /// What `large` compares with, measured in a process of its own (see large.cpp): generates the terrain, builds over it

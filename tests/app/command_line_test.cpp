@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> kCommandNames = {"render", "info", "scenes", "schema", "ocio"};
+const std::vector<std::string> kCommandNames = {"render", "info", "bench", "scenes", "schema", "ocio"};
 const char* const kScene = "spheres-1980";
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -115,7 +115,7 @@ TEST(CommandLineHelp, VersionFromTheProgramAndFromEachCommand) {
 TEST(CommandLineErrors, UnknownWordsAreNamedWithWhatWouldBeRight) {
   TemporaryFolder folder;
   const std::string png = folder.path("a.png");
-  expect_bad_input({"rendr", kScene}, {"\"rendr\"", "did you mean render?", "info, scenes, schema, ocio"});
+  expect_bad_input({"rendr", kScene}, {"\"rendr\"", "did you mean render?", "info, scenes, schema, bench, ocio"});
   expect_bad_input({"--verison"}, {"--verison", "--version"});
   expect_bad_input(with(small_render(png), {"--thread", "2"}), {"unknown flag --thread;", "did you mean --threads?"});
   expect_bad_input(with(small_render(png), {"--exposur=1"}), {"unknown flag --exposur;", "--exposure"});
@@ -271,6 +271,33 @@ TEST(CommandLineInfo, SaysWhatIsInAScene) {
   // Color and alpha: four planes of floats.
   EXPECT_EQ(info["memory_bytes"]["film"], 4 * 4 * 100 * 50);
   EXPECT_GT(info["memory_bytes"]["arrays"], 0);
+}
+
+TEST(CommandLineBench, CountsTheSameAnswersForAnyNumberOfThreads) {
+  const auto run = [](const char* threads) {
+    const ProgramResult result = run_program(
+        {"bench", kScene, "--size", "64x48", "--repetitions", "2", "--threads", threads, "--json", "--quiet"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out);
+  };
+  const Json one = run("1"), three = run("3");
+  ASSERT_EQ(one["rays"].size(), 5u);
+  for (std::size_t kind = 0; kind < 5; ++kind) {
+    const Json &a = one["rays"][kind], &b = three["rays"][kind];
+    EXPECT_GT(a["rays"], 0) << a;
+    for (const char* key : {"kind", "rays", "hits", "checksum"}) EXPECT_EQ(a[key], b[key]) << a << b;
+    EXPECT_EQ(a["millions_per_second"]["count"], 2);
+    EXPECT_GT(a["over_single_rays"]["median"], 0);
+    EXPECT_EQ(a["repeatable"], true);
+  }
+  EXPECT_EQ(one["rays"][0]["rays"], 64 * 48);
+  EXPECT_GT(one["build"]["bytes"], 0);
+
+  const ProgramResult text = run_program({"bench", kScene, "--size", "64x48", "--repetitions", "1"});
+  ASSERT_EQ(text.status, 0) << text.err;
+  for (const char* part : {"primary", "shadow", "mirror", "refracted", "bounce", "Mrays/s", "build"})
+    EXPECT_TRUE(contains(text.out, part)) << part << "\n" << text.out;
+  expect_bad_input({"bench", kScene, "--repetitions", "0"}, {"--repetitions", "0 is not within 1 and 10000"});
 }
 
 // --- rendering ----------------------------------------------------------------------------------------------

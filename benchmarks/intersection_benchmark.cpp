@@ -1,0 +1,205 @@
+#include "benchmarks/intersection_benchmark.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "benchmarks/recording_intersector.h"
+#include "geometry/surface.h"
+#include "renderer/float_mode.h"
+#include "renderer/optics.h"
+
+namespace raytree::benchmarks {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr float kForever = std::numeric_limits<float>::infinity();
+constexpr float kGlassIndex = 1.5f;
+constexpr int kBlockWidth = 4, kBlockHeight = 2;
+
+bool stopped(const std::atomic<bool>* stop) { return stop != nullptr && stop->load(std::memory_order_relaxed); }
+
+void add_ray(RaySet& set, const Vec3f& origin, const Vec3f& direction, float end) {
+  if (set.batches.empty() || set.batches.back().size == kBenchmarkBatch) set.batches.emplace_back(kBenchmarkBatch);
+  set.batches.back().push(origin, direction, end);
+}
+
+std::uint64_t mixed(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+/// Over the hemisphere about `normal`, by its cosine: the normal plus a point of the unit sphere. `key` decides.
+Vec3f bounced(const Vec3f& normal, std::uint64_t key) {
+  const std::uint64_t bits = mixed(key + 0x9e3779b97f4a7c15u);
+  const float height = 1 - 2 * (static_cast<float>(bits >> 40) * 0x1p-24f);
+  const float angle = 6.2831853f * (static_cast<float>((bits >> 16) & 0xffffff) * 0x1p-24f);
+  const float ring = std::sqrt(std::max(0.0f, 1 - height * height));
+  const Vec3f sum = normal + Vec3f(ring * std::cos(angle), ring * std::sin(angle), height);
+  return sum.dot(sum) > 1e-6f ? unit(sum) : normal;
+}
+
+/// Runs `one(batch)` for every batch on `threads` threads and adds up what they return in the order of the batches.
+template <class One>
+PassResult pass(const RaySet& rays, int threads, const One& one) {
+  std::vector<PassResult> results(rays.batches.size());
+  tbb::task_arena arena(threads);
+  const auto start = Clock::now();
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.batches.size(), 4),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        const FlushDenormals flush;
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) results[i] = one(rays.batches[i]);
+                      });
+  });
+  PassResult sum;
+  sum.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  for (const PassResult& result : results) {
+    sum.hits += result.hits;
+    sum.checksum = mixed(sum.checksum ^ result.checksum);
+  }
+  return sum;
+}
+
+/// Folds one answer into a checksum; cheap, since it stands inside the clock.
+std::uint64_t folded(std::uint64_t sum, std::uint64_t word) { return (std::rotl(sum, 5) ^ word) * 0x9e3779b97f4a7c15u; }
+
+}  // namespace
+
+const char* name_of(BenchmarkRays rays) {
+  constexpr const char* kNames[kBenchmarkRaysCount] = {"primary", "shadow", "mirror", "refracted", "bounce"};
+  return kNames[static_cast<std::size_t>(rays)];
+}
+
+std::size_t RaySet::size() const {
+  return std::accumulate(batches.begin(), batches.end(), std::size_t(0),
+                         [](std::size_t sum, const RayBatch& batch) { return sum + batch.size; });
+}
+
+std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const std::atomic<bool>* stop) {
+  std::array<RaySet, kBenchmarkRaysCount> sets;
+  const auto set = [&](BenchmarkRays kind) -> RaySet& { return sets[static_cast<std::size_t>(kind)]; };
+  set(BenchmarkRays::shadow).occlusion = true;
+  set(BenchmarkRays::mirror).coherence = set(BenchmarkRays::refracted).coherence = Coherence::mixed;
+  set(BenchmarkRays::bounce).coherence = Coherence::incoherent;
+
+  RaySet& primary = set(BenchmarkRays::primary);
+  const auto [width, height] = scene.description.image;
+  for (int block_y = 0; block_y < height && !stopped(stop); block_y += kBlockHeight)
+    for (int block_x = 0; block_x < width; block_x += kBlockWidth)
+      for (int y = block_y; y < std::min(block_y + kBlockHeight, height); ++y)
+        for (int x = block_x; x < std::min(block_x + kBlockWidth, width); ++x) {
+          Vec3f origin, direction;
+          scene.camera.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, origin, direction);
+          add_ray(primary, origin, direction, kForever);
+        }
+
+  // Shadow rays toward one light stand together, as the renderer queues them.
+  std::vector<RaySet> toward_light(scene.lights.size());
+  HitBatch hits(kBenchmarkBatch);
+  std::uint64_t point_index = 0;
+  for (const RayBatch& rays : primary.batches) {
+    if (stopped(stop)) break;
+    scene.intersector->intersect(rays, Coherence::coherent, hits);
+    for (std::size_t i = 0; i < rays.size; ++i) {
+      if (hits.geometry[i] == kNoGeometry) continue;
+      const Vec3f direction = rays.direction(i);
+      SurfacePoint point = surface_at(*scene.shapes, rays.origin(i), direction, hits[i], false);
+      const bool leaving = direction.dot(point.geometric_normal) > 0;
+      const Vec3f side = leaving ? -point.geometric_normal : point.geometric_normal;
+      const Vec3f outside = offset_origin(point, side);
+      for (std::size_t light = 0; light < scene.lights.size(); ++light) {
+        float distance;
+        const Vec3f to_light = scene.lights[light].direction_from(point.position, distance);
+        if (to_light.dot(side) > 0) add_ray(toward_light[light], outside, to_light, distance);
+      }
+      add_ray(set(BenchmarkRays::mirror), outside, reflected_direction(direction, side), kForever);
+      if (const auto refracted = refracted_direction(direction, side, leaving ? kGlassIndex : 1 / kGlassIndex))
+        add_ray(set(BenchmarkRays::refracted), offset_origin(point, -side), *refracted, kForever);
+      add_ray(set(BenchmarkRays::bounce), outside, bounced(side, point_index++), kForever);
+    }
+  }
+  for (RaySet& light : toward_light)
+    std::move(light.batches.begin(), light.batches.end(), std::back_inserter(set(BenchmarkRays::shadow).batches));
+  return sets;
+}
+
+PassResult batched_pass(const Scene& scene, const RaySet& rays, int threads) {
+  return pass(rays, threads, [&](const RayBatch& batch) {
+    thread_local HitBatch hits(kBenchmarkBatch);
+    thread_local std::vector<std::uint8_t> occluded(kBenchmarkBatch + kBatchPadding);
+    PassResult result;
+    if (rays.occlusion) {
+      scene.intersector->occluded(batch, rays.coherence, occluded.data());
+      for (std::size_t i = 0; i < batch.size; ++i) {
+        result.hits += occluded[i];
+        result.checksum = folded(result.checksum, occluded[i]);
+      }
+      return result;
+    }
+    scene.intersector->intersect(batch, rays.coherence, hits);
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      if (hits.geometry[i] == kNoGeometry) continue;
+      ++result.hits;
+      result.checksum = folded(result.checksum,
+                               i ^ (std::uint64_t(hits.geometry[i]) << 48) ^ (std::uint64_t(hits.primitive[i]) << 16) ^
+                                   (std::uint64_t(std::bit_cast<std::uint32_t>(hits.distance[i])) << 32));
+    }
+    return result;
+  });
+}
+
+PassResult single_ray_pass(const Scene& scene, const RaySet& rays, int threads) {
+  const EmbreeIntersector& tracer = embree_of(scene);
+  return pass(rays, threads, [&](const RayBatch& batch) {
+    PassResult result;
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const Vec3f origin = batch.origin(i), direction = batch.direction(i);
+      const float end = batch.max_distance[i];
+      result.hits += rays.occlusion ? tracer.occluded_one(origin, direction, end)
+                                    : tracer.intersect_one(origin, direction, end).geometry != kNoGeometry;
+    }
+    return result;
+  });
+}
+
+std::vector<IntersectionFigure> measure_intersection(const Scene& scene,
+                                                     const std::array<RaySet, kBenchmarkRaysCount>& rays, int threads,
+                                                     int repetitions, const std::atomic<bool>* stop) {
+  struct Samples {
+    std::vector<double> speed, ratio;
+  };
+  std::array<Samples, kBenchmarkRaysCount> samples;
+  std::vector<IntersectionFigure> figures;
+  for (std::size_t k = 0; k < kBenchmarkRaysCount; ++k)
+    if (rays[k].size() > 0)
+      figures.emplace_back().kind = static_cast<BenchmarkRays>(k), figures.back().rays = rays[k].size();
+  for (int repetition = 0; repetition <= repetitions && !stopped(stop); ++repetition)
+    for (IntersectionFigure& figure : figures) {
+      const auto kind = static_cast<std::size_t>(figure.kind);
+      const PassResult batched = batched_pass(scene, rays[kind], threads);
+      const PassResult single = single_ray_pass(scene, rays[kind], threads);
+      if (repetition == 0) {
+        figure.hits = batched.hits, figure.checksum = batched.checksum;
+        continue;
+      }
+      figure.repeatable &= batched.hits == figure.hits && batched.checksum == figure.checksum;
+      samples[kind].speed.push_back(static_cast<double>(figure.rays) / batched.seconds * 1e-6);
+      samples[kind].ratio.push_back(single.seconds / batched.seconds);
+    }
+  for (IntersectionFigure& figure : figures) {
+    Samples& of_kind = samples[static_cast<std::size_t>(figure.kind)];
+    figure.millions_per_second = spread_of(std::move(of_kind.speed));
+    figure.single_ratio = spread_of(std::move(of_kind.ratio));
+  }
+  return figures;
+}
+
+}  // namespace raytree::benchmarks

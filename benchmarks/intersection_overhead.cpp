@@ -1,0 +1,75 @@
+// Row bench: what `raytree bench` adds to the Embree calls that it times.
+#include <fmt/format.h>
+
+#include "benchmarks/bare_trace.h"
+#include "benchmarks/intersection_benchmark.h"
+#include "benchmarks/recording_intersector.h"
+#include "benchmarks/reference_scenes.h"
+#include "benchmarks/rows.h"
+
+namespace raytree::benchmarks {
+namespace {
+
+constexpr double kShareOfEmbree = 0.95;
+
+RayClass class_of(const RaySet& rays) {
+  if (rays.occlusion)
+    return rays.coherence == Coherence::coherent ? RayClass::coherent_occlusion : RayClass::incoherent_occlusion;
+  return rays.coherence == Coherence::coherent ? RayClass::coherent_nearest : RayClass::incoherent_nearest;
+}
+
+RayRecord record_of(const RaySet& rays) {
+  RayRecord record;
+  for (const RayBatch& batch : rays.batches) {
+    record.batches.push_back({class_of(rays), record.rays.size(), batch.size});
+    for (std::size_t i = 0; i < batch.size; ++i)
+      record.rays.push_back({batch.origin(i), batch.direction(i), batch.max_distance[i]});
+  }
+  return record;
+}
+
+}  // namespace
+
+std::vector<Figure> measure_intersection_overhead(const MeasureContext& context) {
+  const Scene scene = prepared(reference_scene_with_mesh());
+  const std::array<RaySet, kBenchmarkRaysCount> sets = benchmark_rays(scene);
+  ReplayCalls calls;
+  calls[static_cast<std::size_t>(RayClass::coherent_nearest)] = ReplayCall::coherent_packets;
+  calls[static_cast<std::size_t>(RayClass::coherent_occlusion)] = ReplayCall::coherent_packets;
+  calls[static_cast<std::size_t>(RayClass::incoherent_nearest)] = ReplayCall::incoherent_packets;
+  calls[static_cast<std::size_t>(RayClass::incoherent_occlusion)] = ReplayCall::incoherent_packets;
+  std::vector<Figure> figures;
+  // Mixed packets get their call one by one: there is no one call to compare them with.
+  for (const BenchmarkRays kind : {BenchmarkRays::primary, BenchmarkRays::shadow, BenchmarkRays::bounce}) {
+    context.progress(fmt::format("bench: {} rays", name_of(kind)));
+    const RaySet& rays = sets[static_cast<std::size_t>(kind)];
+    const RayRecord record = record_of(rays);
+    const BareReplay replay(embree_of(scene), record);
+    std::uint64_t bare_hits = 0, hits = 0;
+    const auto bare = [&] {
+      const ReplayTally tally = replay_pass(replay, calls, 1);
+      bare_hits = tally.hits[static_cast<std::size_t>(class_of(rays))];
+      return tally.total_seconds();
+    };
+    const auto batched = [&] {
+      const PassResult pass = batched_pass(scene, rays, 1);
+      hits = pass.hits;
+      return pass.seconds;
+    };
+    const PairedSpread pairs = measure_pairs(bare, batched, PairLimits());
+    Figure figure;
+    figure.row = "bench";
+    figure.what = fmt::format("bare Embree calls / raytree bench, {} {} rays, {}, 1 thread", rays.size(), name_of(kind),
+                              scene.description.name);
+    figure.measured = pairs.ratio;
+    figure.kind = BoundKind::at_least;
+    figure.bound = kShareOfEmbree;
+    if (bare_hits != hits)
+      figure.problem = fmt::format("the bare calls hit {} times, the benchmark {}", bare_hits, hits);
+    figure.note = fmt::format("{:.4f} s bare, {:.4f} s by the benchmark", pairs.a.median, pairs.b.median);
+    figures.push_back(figure);
+  }
+  return figures;
+}
+
+}  // namespace raytree::benchmarks
