@@ -41,7 +41,7 @@ std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const
 
 /// What one pass over a set found.
 struct PassResult {
-  double seconds = 0;          ///< wall time
+  double seconds = 0;          ///< inside the tracer, the mean over the threads; rays wait in the nearest caches
   std::uint64_t hits = 0;      ///< rays that hit or are occluded
   std::uint64_t checksum = 0;  ///< of every answer in the order of the rays, whatever the threads
 };
