@@ -22,6 +22,9 @@ namespace {
 
 using namespace text;
 
+/// Elements and properties that a header may list: a description takes several times the memory of its line.
+constexpr std::size_t kMostHeaderEntries = 65536;
+
 enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 enum class Format { ascii, little_endian, big_endian };
 
@@ -205,6 +208,10 @@ class PlyParser {
       fail("not a PLY file: it does not begin with a line 'ply'");
     bool has_format = false;
     std::int64_t unknown_lines = 0;
+    std::size_t entries = 0;
+    const auto count_entry = [&] {
+      if (++entries > kMostHeaderEntries) fail("more than 65536 elements and properties in the header", header_lines_);
+    };
     for (;;) {
       if (!next_line(line)) fail("the header has no end_header line", header_lines_);
       const std::int64_t number = header_lines_;
@@ -224,6 +231,7 @@ class PlyParser {
                number);
         has_format = true;
       } else if (words[0] == "element") {
+        count_entry();
         std::int64_t count = 0;
         if (words.size() < 3) fail("an element line is 'element NAME COUNT'", number);
         const char* const end = words[2].data() + words[2].size();
@@ -231,6 +239,7 @@ class PlyParser {
           fail(in_quotes(words[2]) + " is not a count of elements", number);
         elements_.push_back({std::string(words[1]), static_cast<std::uint64_t>(count), {}, Use::skipped, 0});
       } else if (words[0] == "property") {
+        count_entry();
         if (elements_.empty()) fail("a property before the first element", number);
         Property property;
         const bool is_list = words.size() > 1 && words[1] == "list";

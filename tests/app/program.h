@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ struct ProgramResult {
   std::string out, err;
   double seconds = 0;  ///< from launch to end
   double seconds_after_signal = 0;
+  std::uint64_t peak_memory_bytes = 0;  ///< resident; not less than what this process had when it launched the other
 };
 
 struct ProgramOptions {
