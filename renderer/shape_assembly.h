@@ -11,7 +11,7 @@ namespace raytree {
 
 /// Consumes the meshes of `description`; fills summary.shapes, bounds and array_bytes. Shape i of the description is
 /// ShapeId i. Throws Error (bad_input).
-ShapeSet assemble_shapes(SceneDescription& description, SceneSummary& summary, const std::atomic<bool>* stop,
+ShapeSet assemble_shapes(SceneDescription& description, const PrepareOptions& options, SceneSummary& summary,
                          Warnings& warnings);
 
 }  // namespace raytree

@@ -21,6 +21,7 @@ struct ProgramOptions {
   int signal = 0;           ///< sent once `signal_after` has passed; 0: none
   double signal_after = 0;  ///< seconds
   bool close_stdout = false;
+  int terminal_columns = 0;              ///< not 0: standard error is a terminal of this width
   std::string input_folder;              ///< working folder; empty: this process's
   std::vector<std::string> environment;  ///< NAME=VALUE, added
 };
