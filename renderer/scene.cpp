@@ -123,7 +123,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   auto start = std::chrono::steady_clock::now();
   const CameraDescription camera = chosen_camera(description, options.camera);
   scene.shapes =
-      std::make_unique<ShapeSet>(assemble_shapes(description, options, scene.summary, warnings));
+      std::make_unique<ShapeSet>(assemble_shapes(description, camera.position, options, scene.summary, warnings));
   scene.description = std::move(description);
   const Vec3d origin = scene.shapes->origin;
 

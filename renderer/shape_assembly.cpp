@@ -310,8 +310,8 @@ void move_to_scene_space(Assembly& assembly, ShapeSet& shapes) {
 
 }  // namespace
 
-ShapeSet assemble_shapes(SceneDescription& description, const PrepareOptions& options, SceneSummary& summary,
-                         Warnings& warnings) {
+ShapeSet assemble_shapes(SceneDescription& description, const Vec3d& eye, const PrepareOptions& options,
+                         SceneSummary& summary, Warnings& warnings) {
   Assembler assembler(description, options, warnings);
   summary.shapes.resize(description.shapes.size());
   for (std::size_t i = 0; i < description.shapes.size(); ++i) {
@@ -321,7 +321,13 @@ ShapeSet assemble_shapes(SceneDescription& description, const PrepareOptions& op
     if (!shape.bounds.isInfinite()) summary.bounds.extendBy(shape.bounds);
   }
   ShapeSet shapes;
-  shapes.origin = scene_origin(summary.bounds);
+  Bounds3d place = summary.bounds;
+  if (place.isEmpty() && !assembler.assembly.planes.empty()) {
+    // Planes have no bounds; where they are seen is where they are given and where the eye is.
+    place.extendBy(eye);
+    for (const Plane& plane : assembler.assembly.planes) place.extendBy(plane.point);
+  }
+  shapes.origin = scene_origin(place);
   move_to_scene_space(assembler.assembly, shapes);
   summary.array_bytes = memory_bytes(shapes);
   return shapes;
