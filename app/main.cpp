@@ -10,8 +10,8 @@
 
 #include "app/commands.h"
 #include "app/exit_status.h"
-#include "app/machine.h"
 #include "app/messages.h"
+#include "app/process.h"
 #include "app/suggestion.h"
 
 namespace raytree::app {

@@ -46,20 +46,20 @@ Progress::~Progress() { clear(); }
 
 void Progress::phase(const std::string& text) {
   const std::lock_guard lock(mutex_);
-  tracing_ = false;
   if (mode_ == ProgressMode::bar) draw(text);
+}
+
+void Progress::begin_tracing() {
+  const std::lock_guard lock(mutex_);
+  begin_ = last_drawn_ = Clock::now();
+  last_step_ = 0;
+  if (mode_ == ProgressMode::bar) draw("tracing");
 }
 
 void Progress::update(const RenderProgress& done) {
   if (mode_ == ProgressMode::none) return;
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  if (!tracing_) {
-    tracing_ = true;
-    begin_ = now;
-    last_drawn_ = {};
-    last_step_ = 0;
-  }
   const double seconds = std::chrono::duration<double>(now - begin_).count();
   if (mode_ == ProgressMode::plain) {
     const int step =

@@ -23,6 +23,8 @@ class Progress {
 
   /// Says what is going on before and after the tracing ("reading dragon.ply"); drawn by the bar alone.
   void phase(const std::string& text);
+  /// The tracing begins: speed and time left count from here.
+  void begin_tracing();
   /// After a tile; drawn at most ten times a second (bar) or each 5 % (plain). Thread-safe.
   void update(const RenderProgress& done);
   /// Takes the bar off the terminal, so that messages can be written.
@@ -38,7 +40,6 @@ class Progress {
   std::mutex mutex_;
   std::atomic<bool> drawn_{false};  ///< something of a bar stands on the terminal
   Clock::time_point begin_, last_drawn_;
-  bool tracing_ = false;
   int last_step_ = 0;  ///< plain: twentieths already told
 };
 

@@ -10,8 +10,8 @@
 #include "app/commands.h"
 #include "app/exit_status.h"
 #include "app/interruption.h"
-#include "app/machine.h"
 #include "app/messages.h"
+#include "app/process.h"
 #include "app/render_options.h"
 #include "app/statistics_json.h"
 #include "renderer/film_image.h"
@@ -67,6 +67,7 @@ class RenderRun {
     prepare_options.camera = options_.scene.camera;
     prepare_options.threads = options_.threads;
     prepare_options.stop = &interruption_.stop();
+    prepare_options.on_phase = [this](const std::string& text) { progress_.phase(text); };
     Scene scene = prepare(std::move(description), prepare_options, report_.warnings);
     check_interruption();
     report_.warnings.insert(report_.warnings.begin(), options_.warnings.begin(), options_.warnings.end());
@@ -89,6 +90,7 @@ class RenderRun {
     // Loaded while the tracing runs, and no sooner: the dynamic loader's lock, held for a third of a second, would stop
     // OpenColorIO, TBB and Embree, which open libraries of their own as they start.
     preload_image_io();
+    progress_.begin_tracing();
     RenderResult result = render(scene, render_options);
     check_interruption();
     report_.scene = scene.description.name;

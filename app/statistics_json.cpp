@@ -4,8 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/machine.h"
 #include "app/messages.h"
+#include "app/process.h"
+#include "renderer/machine.h"
 #include "renderer/scene_reader.h"
 
 namespace raytree::app {

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "app/machine.h"
 #include "app/messages.h"
+#include "app/process.h"
 #include "app/suggestion.h"
 
 namespace raytree::app {

@@ -25,9 +25,7 @@ Figure floor_figure(const Scene& scene, const RayRecord& record, const BareRepla
 
   Figure figure;
   figure.row = "floor";
-  figure.what =
-      fmt::format("bare Embree calls / tracing phase, {}, {}x{}, {} thread{}", scene.description.name,
-                  scene.description.image.width, scene.description.image.height, threads, threads == 1 ? "" : "s");
+  figure.what = "bare Embree calls / tracing phase, " + picture_text(scene, threads);
   figure.measured = pairs.ratio;
   figure.kind = BoundKind::at_least;
   figure.bound = kFloor;

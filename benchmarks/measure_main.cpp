@@ -9,12 +9,13 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/child_process.h"
-#include "benchmarks/machine.h"
 #include "benchmarks/rows.h"
 #include "geometry/error.h"
+#include "renderer/machine.h"
 
 namespace {
 
@@ -57,6 +58,13 @@ class ScratchFolder {
 };
 
 /// A row that cannot be measured falls short: a missing program must not read as a bound that holds.
+/// What the figures were measured on: name and value, in the order of printing.
+std::vector<std::pair<std::string, std::string>> machine_lines() {
+  const Machine here = machine();
+  return {{"processor", here.processor}, {"cores", std::to_string(here.hardware_threads)}, {"compiler", here.compiler},
+          {"build", here.build_type},    {"instruction set", here.instruction_set},        {"tracer", here.tracer}};
+}
+
 std::vector<Figure> measured(const Row& row, const MeasureContext& context) {
   try {
     return row.measure(context);

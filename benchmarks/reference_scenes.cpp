@@ -1,5 +1,7 @@
 #include "benchmarks/reference_scenes.h"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 
@@ -57,6 +59,11 @@ SceneDescription trivial_scene() {
   scene.lights.push_back(sun);
   add_shape(scene, "ball", SphereShape{}, {0, 0, 0});
   return scene;
+}
+
+std::string picture_text(const Scene& scene, int threads) {
+  return fmt::format("{}, {}x{}, {} thread{}", scene.description.name, scene.description.image.width,
+                     scene.description.image.height, threads, threads == 1 ? "" : "s");
 }
 
 Scene prepared(SceneDescription description) {

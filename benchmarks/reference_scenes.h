@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "renderer/scene.h"
 #include "renderer/scene_description.h"
@@ -21,6 +22,9 @@ inline constexpr const char* kTerrainCountPath = "shapes.terrain.triangles";  //
 
 /// One sphere, 64x64: what is left of a render's time is the program's start.
 SceneDescription trivial_scene();
+
+/// "spheres-1980, 1280x960, 2 threads": what a row says of the picture it traces.
+std::string picture_text(const Scene& scene, int threads);
 
 /// Prepares a scene for any number of threads.
 Scene prepared(SceneDescription description);

@@ -22,9 +22,7 @@ std::vector<Figure> measure_waves(const MeasureContext& context) {
                         [&] { return render(scene, options).statistics.wall_seconds; }, PairLimits());
       Figure figure;
       figure.row = "waves";
-      figure.what =
-          fmt::format("single-ray recursion / generations, {}, {}x{}, {} thread{}", scene.description.name,
-                      scene.description.image.width, scene.description.image.height, threads, threads == 1 ? "" : "s");
+      figure.what = "single-ray recursion / generations, " + picture_text(scene, threads);
       figure.measured = pairs.ratio;
       figure.kind = BoundKind::at_least;
       figure.bound = threads == 1 ? 1.2 : 1.4;

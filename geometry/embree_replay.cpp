@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <numeric>
 
+#include "geometry/embree_packets.h"
 #include "geometry/embree_state.h"
 #include "geometry/plane_intersection.h"
 
 namespace raytree {
 namespace {
 
+using embree::PacketTypes;
 using embree::Query;
 using Clock = std::chrono::steady_clock;
 using Ray = RayRecord::Ray;
@@ -22,19 +23,6 @@ constexpr std::size_t kBlock = 256;
 /// Rays that make a chunk: a few tiles' work.
 constexpr std::size_t kChunk = 16384;
 
-template <int Width>
-struct Packet;
-template <>
-struct Packet<8> {
-  using RayHit = RTCRayHit8;
-  using RayOnly = RTCRay8;
-};
-template <>
-struct Packet<4> {
-  using RayHit = RTCRayHit4;
-  using RayOnly = RTCRay4;
-};
-
 template <class Lanes>
 void set_lane(Lanes& lanes, int i, const Ray& ray) {
   lanes.org_x[i] = ray.origin.x, lanes.org_y[i] = ray.origin.y, lanes.org_z[i] = ray.origin.z;
@@ -43,22 +31,13 @@ void set_lane(Lanes& lanes, int i, const Ray& ray) {
   lanes.mask[i] = 0xffffffffu, lanes.id[i] = 0, lanes.flags[i] = 0;
 }
 
-RTCRay single_ray(const Ray& from) {
-  RTCRay ray;
-  ray.org_x = from.origin.x, ray.org_y = from.origin.y, ray.org_z = from.origin.z;
-  ray.dir_x = from.direction.x, ray.dir_y = from.direction.y, ray.dir_z = from.direction.z;
-  ray.tnear = 0, ray.tfar = from.max_distance, ray.time = 0;
-  ray.mask = 0xffffffffu, ray.id = 0, ray.flags = 0;
-  return ray;
-}
-
 /// Room for one block's packets of any kind.
 template <int Width>
 struct Workspace {
   static constexpr std::size_t kPackets = kBlock / Width;
   alignas(64) int valid[kPackets][Width];
-  alignas(64) typename Packet<Width>::RayHit ray_hits[kPackets];
-  alignas(64) typename Packet<Width>::RayOnly rays[kPackets];
+  alignas(64) typename PacketTypes<Width>::RayHit ray_hits[kPackets];
+  alignas(64) typename PacketTypes<Width>::Ray rays[kPackets];
   alignas(64) RTCRayHit single_ray_hits[kBlock];
   alignas(64) RTCRay single_rays[kBlock];
 };
@@ -72,11 +51,8 @@ class Replayer {
     Query query(call == ReplayCall::coherent_packets);
     double seconds = 0;
     if (call == ReplayCall::single_rays) {
-      for (std::size_t i = 0; i < size; ++i) {
-        work_.single_ray_hits[i].ray = single_ray(rays[i]);
-        work_.single_ray_hits[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        work_.single_ray_hits[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      }
+      for (std::size_t i = 0; i < size; ++i)
+        work_.single_ray_hits[i] = embree::single_ray_hit(rays[i].origin, rays[i].direction, rays[i].max_distance);
       const auto start = Clock::now();
       for (std::size_t i = 0; i < size; ++i) query.intersect(scene_, work_.single_ray_hits[i]);
       seconds = since(start);
@@ -85,8 +61,7 @@ class Replayer {
     }
     const std::size_t packets = fill(rays, size, [&](std::size_t packet, int lane, const Ray& ray) {
       set_lane(work_.ray_hits[packet].ray, lane, ray);
-      work_.ray_hits[packet].hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-      work_.ray_hits[packet].hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+      embree::clear_hit(work_.ray_hits[packet].hit, lane);
     });
     const auto start = Clock::now();
     for (std::size_t p = 0; p < packets; ++p) query.intersect(scene_, work_.valid[p], work_.ray_hits[p]);
@@ -102,7 +77,8 @@ class Replayer {
     double seconds = 0;
     const auto stopped = [&](std::size_t i) { return behind_plane != nullptr && behind_plane[i] != 0; };
     if (call == ReplayCall::single_rays) {
-      for (std::size_t i = 0; i < size; ++i) work_.single_rays[i] = single_ray(rays[i]);
+      for (std::size_t i = 0; i < size; ++i)
+        work_.single_rays[i] = embree::single_ray(rays[i].origin, rays[i].direction, rays[i].max_distance);
       const auto start = Clock::now();
       for (std::size_t i = 0; i < size; ++i) query.occluded(scene_, work_.single_rays[i]);
       seconds = since(start);
@@ -142,13 +118,6 @@ double replay_block(RTCScene scene, const Ray* rays, const std::uint8_t* behind_
   Replayer<Width> replayer(scene, work);
   return is_occlusion(ray_class) ? replayer.occlusion(rays, behind_plane, size, call, hits)
                                  : replayer.nearest(rays, size, call, hits);
-}
-
-/// As the intersector's own check.
-bool traceable(const Ray& ray) {
-  return std::isfinite(ray.origin.x + ray.origin.y + ray.origin.z) &&
-         std::isfinite(ray.direction.x + ray.direction.y + ray.direction.z) && ray.direction != Vec3f(0, 0, 0) &&
-         ray.max_distance >= 0;
 }
 
 }  // namespace
@@ -203,7 +172,7 @@ void BareReplay::append(const RayRecord& record, const RayRecord::Batch& batch) 
   const std::vector<Plane>& planes = intersector_.state_->shapes->planes;
   for (std::size_t i = batch.first; i < batch.first + batch.size; ++i) {
     Ray ray = record.rays[i];
-    if (!traceable(ray)) continue;
+    if (!embree::traceable(ray.origin, ray.direction, ray.max_distance)) continue;
     bool stopped = false;
     for (const Plane& plane : planes) {
       const float distance = plane_distance(plane, ray.origin, ray.direction);

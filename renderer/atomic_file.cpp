@@ -1,5 +1,6 @@
-// Files that appear whole or not at all: a temporary file beside the target, fsync, rename. What is not a regular file
-// (devices, pipes, descriptors under /dev/fd) is written in place.
+// Files that appear whole or not at all: written and synced without a name, so that not even kill -9 leaves anything,
+// then given their name; where the file system knows no nameless files, a temporary file beside the target that is
+// renamed. What is not a regular file (devices, pipes, descriptors under /dev/fd) is written in place.
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
@@ -185,33 +186,91 @@ int open_in_place(const std::string& path, bool pipe) {
 
 std::atomic<unsigned> temporary_counter{0};
 
-void write_beside_and_rename(const std::string& path, const std::string& target, const struct stat* existing,
-                             const void* bytes, std::size_t size) {
-  // rename would replace a file that its owner protected.
-  if (existing != nullptr && ::access(target.c_str(), W_OK) != 0) fail(path, "cannot write", errno);
-  const std::string folder = folder_of(target);
+/// What is to be written, and where.
+struct Whole {
+  const std::string& path;      // as the caller named it, for messages
+  const std::string& target;    // what links lead to
+  const struct stat* existing;  // null: there is no file yet
+  const void* bytes;
+  std::size_t size;
+};
+
+void fill(const Descriptor& file, const Whole& whole) {
+  // Keeping the mode is a courtesy: file systems without modes refuse it.
+  if (whole.existing != nullptr && ::fchmod(file.number(), whole.existing->st_mode & 07777) != 0) errno = 0;
+  if (const int code = write_all(file.number(), whole.bytes, whole.size)) fail(whole.path, "cannot write", code);
+  if (::fsync(file.number()) != 0) fail(whole.path, "cannot write to the disk", errno);
+}
+
+std::string temporary_name(const std::string& folder) {
+  return (folder == "/" ? "" : folder) + "/.raytree-" + std::to_string(::getpid()) + "-" +
+         std::to_string(temporary_counter++) + ".part";
+}
+
+constexpr int kNameAttempts = 1000;  // names may be left by a process of the same number that was killed
+
+/// Moves a finished file from its temporary name to its own.
+void put_in_place(TemporaryName& name, const std::string& temporary, const Whole& whole) {
+  if (::rename(temporary.c_str(), whole.target.c_str()) != 0)
+    fail(whole.path, "cannot put the finished file in place", errno);
+  name.kept();
+}
+
+/// Gives the nameless file its name. False: the system gives it none (no /proc, no links); nothing is left then.
+bool name_nameless(const Descriptor& file, const std::string& folder, const Whole& whole) {
+  const std::string source = "/proc/self/fd/" + std::to_string(file.number());
+  const auto link_to = [&](const std::string& name) {
+    return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  };
+  if (whole.existing == nullptr && link_to(whole.target)) return true;
+  // A link replaces nothing, only a rename does: the finished file passes through a temporary name.
+  for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
+    const std::string temporary = temporary_name(folder);
+    TemporaryName name(temporary);
+    if (!link_to(temporary)) {
+      if (errno == EEXIST) continue;
+      return false;
+    }
+    name.created();
+    put_in_place(name, temporary, whole);
+    return true;
+  }
+  return false;
+}
+
+/// False where the file system knows no nameless files.
+bool write_nameless(const std::string& folder, const Whole& whole) {
+  const Descriptor file(::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
+  if (file.number() < 0) return false;
+  fill(file, whole);
+  return name_nameless(file, folder, whole);
+}
+
+void write_beside_and_rename(const std::string& folder, const Whole& whole) {
   for (int attempt = 0;; ++attempt) {
-    const std::string temporary = (folder == "/" ? "" : folder) + "/.raytree-" + std::to_string(::getpid()) + "-" +
-                                  std::to_string(temporary_counter++) + ".part";
+    const std::string temporary = temporary_name(folder);
     TemporaryName name(temporary);
     Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666));
     if (file.number() < 0) {
-      if (errno == EEXIST && attempt < 1000) continue;  // left by a process of the same number that was killed
-      fail(path, "cannot create a file in folder " + folder, errno);
+      if (errno == EEXIST && attempt < kNameAttempts) continue;
+      fail(whole.path, "cannot create a file in folder " + folder, errno);
     }
     name.created();
-    // Keeping the mode is a courtesy: file systems without modes refuse it.
-    if (existing != nullptr && ::fchmod(file.number(), existing->st_mode & 07777) != 0) errno = 0;
-    if (const int code = write_all(file.number(), bytes, size)) fail(path, "cannot write", code);
-    if (::fsync(file.number()) != 0) fail(path, "cannot write to the disk", errno);
-    if (const int code = file.close()) fail(path, "cannot write", code);
-    if (::rename(temporary.c_str(), target.c_str()) != 0) fail(path, "cannot put the finished file in place", errno);
-    name.kept();
-    // Makes the new name outlast a power cut; the file itself is whole already, so a refusal is no failure.
-    const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (directory.number() >= 0 && ::fsync(directory.number()) != 0) errno = 0;
+    fill(file, whole);
+    if (const int code = file.close()) fail(whole.path, "cannot write", code);
+    put_in_place(name, temporary, whole);
     return;
   }
+}
+
+void write_whole(const Whole& whole) {
+  // A new file would replace one that its owner protected.
+  if (whole.existing != nullptr && ::access(whole.target.c_str(), W_OK) != 0) fail(whole.path, "cannot write", errno);
+  const std::string folder = folder_of(whole.target);
+  if (!write_nameless(folder, whole)) write_beside_and_rename(folder, whole);
+  // Makes the new name outlast a power cut; the file itself is whole already, so a refusal is no failure.
+  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (directory.number() >= 0 && ::fsync(directory.number()) != 0) errno = 0;
 }
 
 }  // namespace
@@ -234,7 +293,7 @@ void write_file_atomically(const std::string& path, const void* bytes, std::size
     if (const int code = file.close()) fail(path, "cannot write", code);
     return;
   }
-  write_beside_and_rename(path, target, exists ? &status : nullptr, bytes, size);
+  write_whole({path, target, exists ? &status : nullptr, bytes, size});
 }
 
 void remove_unfinished_file() noexcept {

@@ -52,9 +52,10 @@ struct EncodeReport {
 /// Throws Error (failure).
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, EncodeReport* report = nullptr);
 
-/// Writes bytes to `path` whole or not at all: a temporary file beside it, fsync, rename; links are followed and the
-/// mode of an existing file is kept. "-" is standard output; devices, pipes and /dev/fd/N are written in place.
-/// An existing file stays as it was when anything fails. Throws Error (failure) with the path and the system's reason.
+/// Writes bytes to `path` whole or not at all: into a file without a name (O_TMPFILE; where that is not to be had, a
+/// temporary file beside it), fsync, then the name; links are followed and the mode of an existing file is kept. "-" is
+/// standard output; devices, pipes and /dev/fd/N are written in place. An existing file stays as it was when anything
+/// fails. Throws Error (failure) with the path and the system's reason.
 void write_file_atomically(const std::string& path, const void* bytes, std::size_t size);
 
 /// Removes the temporary files of writes under way, if any. Async-signal-safe: for the handler of an interruption.

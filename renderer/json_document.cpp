@@ -144,18 +144,20 @@ class JsonTreeBuilder {
 
 namespace {
 
-// The lexer buffers a token several times over, so one of a gigabyte would take several; and it takes a zero byte for
-// the end, whatever follows. Both are found beforehand.
+// The lexer buffers a token, and the blanks before it, several times over, so one of a gigabyte would take several; and
+// it takes a zero byte for the end, whatever follows. All are found beforehand.
 void refuse_bad_bytes(std::string_view text, const std::string& name) {
   const auto refuse = [&](std::size_t where, const char* message) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(where), '\n');
     throw Error(ErrorKind::bad_input, {name, line, ""}, message);
   };
   if (const auto zero = text.find('\0'); zero != text.npos) refuse(zero, "not valid JSON: a byte of value 0");
-  std::size_t start = 0;
+  std::size_t start = 0, blanks = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
+    blanks = !in_string && c <= ' ' && c >= 0 ? blanks + 1 : 0;
+    if (blanks > kMaxJsonToken) refuse(i, "more than 1 MiB of blanks in a row");
     if (in_string ? c == '"' : (c == ',' || c == ':' || c == '[' || c == ']' || c == '{' || c == '}' || c <= ' ')) {
       start = i + 1;
       in_string = false;

@@ -12,9 +12,10 @@ namespace raytree {
 
 enum class JsonKind : std::uint32_t { null, boolean, number, string, array, object };
 
-inline constexpr int kMaxJsonDepth = 100;                           ///< nested arrays and objects
-inline constexpr std::size_t kMaxJsonText = std::size_t(1) << 30;   ///< bytes of one document
-inline constexpr std::size_t kMaxJsonToken = std::size_t(1) << 20;  ///< bytes of one string or number
+inline constexpr int kMaxJsonDepth = 100;                          ///< nested arrays and objects
+inline constexpr std::size_t kMaxJsonText = std::size_t(1) << 30;  ///< bytes of one document
+inline constexpr std::size_t kMaxJsonToken = std::size_t(1)
+                                             << 20;  ///< bytes of one string or number, or of blanks in a row
 
 inline constexpr std::size_t kJsonTreeBytes = std::size_t(160) << 20;  ///< see JsonDocument::parse
 

@@ -130,6 +130,14 @@ std::uint64_t estimated_intersector_bytes(const SceneSummary& summary) {
   return bytes;
 }
 
+std::string building_text(const SceneSummary& summary) {
+  std::uint64_t triangles = 0, spheres = 0;
+  for (const ShapeSummary& shape : summary.shapes) triangles += shape.triangles, spheres += shape.spheres;
+  std::string text = "building over " + std::to_string(triangles) + " triangles";
+  if (spheres > 0) text += ", " + std::to_string(spheres) + " spheres";
+  return text;
+}
+
 }  // namespace
 
 Scene::Scene() = default;
@@ -141,7 +149,8 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   Scene scene;
   auto start = std::chrono::steady_clock::now();
   const CameraDescription camera = chosen_camera(description, options.camera);
-  scene.shapes = std::make_unique<ShapeSet>(assemble_shapes(description, scene.summary, options.stop, warnings));
+  scene.shapes =
+      std::make_unique<ShapeSet>(assemble_shapes(description, camera.position, options, scene.summary, warnings));
   scene.description = std::move(description);
   const Vec3d origin = scene.shapes->origin;
 
@@ -170,6 +179,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   scene.seconds.load = seconds_since(start);
   if (!options.build) return scene;
 
+  if (options.on_phase) options.on_phase(building_text(scene.summary));
   start = std::chrono::steady_clock::now();
   EmbreeOptions embree;
   embree.threads = options.threads;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -47,6 +48,9 @@ struct PrepareOptions {
   int threads = 0;                          ///< that the intersector may use; 0: all of the arena
   const std::atomic<bool>* stop = nullptr;  ///< checked while building
   bool build = true;                        ///< false: assemble only, no intersector (for `info`)
+  /// Told what begins, in a few words ("reading dragon.ply", "building over 871306 triangles"); from prepare()'s
+  /// thread.
+  std::function<void(const std::string&)> on_phase;
 };
 
 struct PhaseSeconds {

@@ -150,7 +150,8 @@ void apply_normal_source(PolygonMesh& mesh, const MeshShape& shape, const Source
 
 class Assembler {
  public:
-  Assembler(const SceneDescription& scene, Warnings& warnings) : scene_(scene), warnings_(warnings) {}
+  Assembler(const SceneDescription& scene, const PrepareOptions& options, Warnings& warnings)
+      : scene_(scene), options_(options), warnings_(warnings) {}
 
   Assembly assembly;
 
@@ -181,6 +182,7 @@ class Assembler {
     std::shared_ptr<PolygonMesh> mesh = std::move(kind.mesh);
     if (!mesh) {
       const std::filesystem::path path = std::filesystem::path(scene_.folder) / kind.file;
+      begin_phase("reading " + kind.file);
       try {
         mesh = std::make_shared<PolygonMesh>(read_mesh_file(path.string(), warnings_));
       } catch (const Error& error) {
@@ -189,6 +191,7 @@ class Assembler {
         throw Error(error.kind(), shape.where, error.what());
       }
     }
+    begin_phase("preparing " + shape.name);
     count_faces(*mesh, summary);
     apply_normal_source(*mesh, kind, shape.where, warnings_);
     add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
@@ -196,6 +199,7 @@ class Assembler {
 
   void add_kind(TerrainShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "terrain";
+    begin_phase("generating " + shape.name);
     TriangleMesh mesh = make_terrain({kind.triangles, kind.size, kind.height, kind.roughness, kind.seed});
     summary.faces_by_size[0] = mesh.triangle_count();
     add_mesh(std::move(mesh), shape, id, summary);
@@ -213,6 +217,7 @@ class Assembler {
 
   void add_kind(SphereFlakeShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "sphere_flake";
+    begin_phase("generating " + shape.name);
     const SphereFlakeParameters parameters{kind.levels, kind.center, kind.radius};
     Assembly::Flake flake{make_sphere_flake(parameters), shape.transform,
                           uniform_scale(shape.transform, "sphere flake", shape.where), id};
@@ -248,7 +253,12 @@ class Assembler {
     assembly.discs.push_back({center, normal, radius, id});
   }
 
+  void begin_phase(const std::string& text) const {
+    if (options_.on_phase) options_.on_phase(text);
+  }
+
   const SceneDescription& scene_;
+  const PrepareOptions& options_;
   Warnings& warnings_;
 };
 
@@ -300,18 +310,24 @@ void move_to_scene_space(Assembly& assembly, ShapeSet& shapes) {
 
 }  // namespace
 
-ShapeSet assemble_shapes(SceneDescription& description, SceneSummary& summary, const std::atomic<bool>* stop,
-                         Warnings& warnings) {
-  Assembler assembler(description, warnings);
+ShapeSet assemble_shapes(SceneDescription& description, const Vec3d& eye, const PrepareOptions& options,
+                         SceneSummary& summary, Warnings& warnings) {
+  Assembler assembler(description, options, warnings);
   summary.shapes.resize(description.shapes.size());
   for (std::size_t i = 0; i < description.shapes.size(); ++i) {
-    if (stop != nullptr && stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
+    if (options.stop != nullptr && options.stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
     ShapeSummary& shape = summary.shapes[i];
     assembler.add(description.shapes[i], static_cast<ShapeId>(i), shape);
     if (!shape.bounds.isInfinite()) summary.bounds.extendBy(shape.bounds);
   }
   ShapeSet shapes;
-  shapes.origin = scene_origin(summary.bounds);
+  Bounds3d place = summary.bounds;
+  if (place.isEmpty() && !assembler.assembly.planes.empty()) {
+    // Planes have no bounds; where they are seen is where they are given and where the eye is.
+    place.extendBy(eye);
+    for (const Plane& plane : assembler.assembly.planes) place.extendBy(plane.point);
+  }
+  shapes.origin = scene_origin(place);
   move_to_scene_space(assembler.assembly, shapes);
   summary.array_bytes = memory_bytes(shapes);
   return shapes;

@@ -10,8 +10,8 @@
 namespace raytree {
 
 /// Consumes the meshes of `description`; fills summary.shapes, bounds and array_bytes. Shape i of the description is
-/// ShapeId i. Throws Error (bad_input).
-ShapeSet assemble_shapes(SceneDescription& description, SceneSummary& summary, const std::atomic<bool>* stop,
-                         Warnings& warnings);
+/// ShapeId i. `eye`, the camera's place, says where a scene of planes alone lies. Throws Error (bad_input).
+ShapeSet assemble_shapes(SceneDescription& description, const Vec3d& eye, const PrepareOptions& options,
+                         SceneSummary& summary, Warnings& warnings);
 
 }  // namespace raytree

@@ -2,6 +2,9 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <pty.h>
+#include <sys/ioctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,11 +24,24 @@ constexpr double kLongest = 120;  // seconds; a program that hangs must not hang
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
+/// A pseudo-terminal, as [reading end, the program's end].
+void open_terminal(int columns, int (&ends)[2]) {
+  winsize size{};
+  size.ws_row = 24;
+  size.ws_col = static_cast<unsigned short>(columns);
+  if (openpty(&ends[0], &ends[1], nullptr, nullptr, &size) != 0) throw std::runtime_error("openpty");
+  for (const int end : ends) fcntl(end, F_SETFD, FD_CLOEXEC);
+}
+
 }  // namespace
 
 ProgramResult run_program(const std::vector<std::string>& arguments, const ProgramOptions& options) {
   int out[2], err[2];
-  if (pipe2(out, O_CLOEXEC) != 0 || pipe2(err, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
+  if (pipe2(out, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
+  if (options.terminal_columns > 0)
+    open_terminal(options.terminal_columns, err);
+  else if (pipe2(err, O_CLOEXEC) != 0)
+    throw std::runtime_error("pipe");
   std::vector<const char*> words = {RAYTREE_PROGRAM};
   for (const std::string& argument : arguments) words.push_back(argument.c_str());
   words.push_back(nullptr);
@@ -73,7 +89,9 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
     }
   }
   int status = 0;
-  waitpid(child, &status, 0);
+  rusage usage{};
+  wait4(child, &status, 0, &usage);
+  result.peak_memory_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
   result.seconds = since(begin);
   result.seconds_after_signal = signalled ? since(signal_time) : 0;
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,12 +14,14 @@ struct ProgramResult {
   std::string out, err;
   double seconds = 0;  ///< from launch to end
   double seconds_after_signal = 0;
+  std::uint64_t peak_memory_bytes = 0;  ///< resident; not less than what this process had when it launched the other
 };
 
 struct ProgramOptions {
   int signal = 0;           ///< sent once `signal_after` has passed; 0: none
   double signal_after = 0;  ///< seconds
   bool close_stdout = false;
+  int terminal_columns = 0;              ///< not 0: standard error is a terminal of this width
   std::string input_folder;              ///< working folder; empty: this process's
   std::vector<std::string> environment;  ///< NAME=VALUE, added
 };

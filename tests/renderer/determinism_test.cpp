@@ -78,7 +78,7 @@ void expect_the_same_picture_always(SceneDescription description, const std::str
   const RenderResult reference = render(scene, options);
   ASSERT_TRUE(reference.complete);
   for (const int threads : {1, 2, 3, 7})
-    for (const std::uint64_t seed : {0, 99}) {
+    for (const std::uint64_t seed : {0u, 1u, 99u, 2026u, 0xfedcba98u}) {
       options.threads = threads;
       options.tile_order_seed = seed;
       const RenderResult result = render(scene, options);

@@ -549,6 +549,32 @@ TEST_F(ImageFileTest, InterruptedAndKilledWritesLeaveWholeFiles) {
   }
 }
 
+TEST_F(ImageFileTest, KilledWritesOfANewFileLeaveNothingBehind) {
+  const int probe = open(folder_.c_str(), O_TMPFILE | O_WRONLY, 0600);
+  if (probe < 0) GTEST_SKIP() << "no nameless files in " << folder_ << ": a killed write leaves its temporary file";
+  close(probe);
+  const std::string text(std::size_t(8) << 20, 'n');
+  int unfinished = 0;
+  for (int i = 0; i < 20; ++i) {
+    const pid_t child = fork();
+    if (child == 0) {
+      write_text(path("b"), text);
+      for (;;) pause();
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(300 + 700 * i));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    if (fs::exists(path("b"))) {
+      EXPECT_EQ(fs::file_size(path("b")), text.size());
+      fs::remove(path("b"));
+    } else {
+      ++unfinished;
+    }
+    EXPECT_TRUE(listing().empty()) << listing().front();
+  }
+  EXPECT_GT(unfinished, 0) << "every write was finished before it was killed: nothing was tested";
+}
+
 // A program that exits while the module is still loading, or never finds it, must do so quietly.
 TEST_F(ImageFileTest, ExitDuringThePreloadIsSafe) {
   for (const int pause_ms : {0, 20, 100}) {

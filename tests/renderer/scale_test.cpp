@@ -101,6 +101,42 @@ TEST(Scale, FloorsAndObjectsShowNoAcneAndKeepTheirShadows) {
   });
 }
 
+TEST(Scale, PlanesAloneLookTheSameFarFromTheOrigin) {
+  // A checkered floor and a mirror wall, which have no bounds that could say where the scene is: the checker's edges,
+  // the wall's foot and the mirrored floor must stay in their pixels.
+  const auto picture = [](double scale, const Vec3d& at) {
+    CameraDescription camera;
+    camera.position = at + Vec3d(0.3, 1.5, 4) * scale;
+    camera.target = at + Vec3d(0, 0.2, 0) * scale;
+    SceneDescription scene = dark_scene(48, camera);
+    CheckerPattern checker;
+    checker.size = 0.37 * scale;
+    scene.materials = {material("floor", checker), material("wall", Rgb(0))};
+    scene.materials[1].reflection = Rgb(0.7f);
+    scene.lights = {point_light(at + Vec3d(1, 3, 2) * scale)};
+    scene.shapes = {shape(PlaneShape{at, {0, 1, 0}}, "floor"),
+                    shape(PlaneShape{at + Vec3d(0, 0, -2) * scale, {0.2, 0, 1}}, "wall")};
+    return rendered(std::move(scene));
+  };
+  for (double scale = 1e-3; scale < 2e3; scale *= 10) {
+    // The checker is anchored at the world's origin: whole periods away it is the same.
+    const double period = 2 * 0.37 * scale;
+    const RenderResult reference = picture(scale, {0, 0, 0});
+    for (const double periods : {1e3, 1e6}) {
+      const RenderResult result = picture(scale, Vec3d(periods, 0, -periods) * period);
+      int differing = 0, lit = 0;
+      for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 48; ++x) {
+          lit += color_at(reference.film, x, y).r > 0.05f;
+          differing += std::abs(color_at(result.film, x, y).r - color_at(reference.film, x, y).r) > 1e-3;
+        }
+      EXPECT_GT(lit, 500) << scale;
+      // Single samples within float's rounding of an edge of the checker may fall on its other side.
+      EXPECT_LE(differing, 2) << "scale " << scale << ", " << periods << " periods away";
+    }
+  }
+}
+
 TEST(Scale, ContactShadowsReachTheContact) {
   // A box on the floor, the sun at 45 degrees: the shadow's inner edge is the box's own foot.
   over_scales_and_offsets([&](double scale, const Vec3d& at) {

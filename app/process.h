@@ -1,18 +1,10 @@
-// What ran where: version, compiler, processor, memory of this process, clock since launch.
+// This program and this run of it: version, memory, clock since launch.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 namespace raytree::app {
-
-struct Machine {
-  std::string processor;     ///< model name; "unknown" where the system does not tell
-  int hardware_threads = 0;  ///< that this process may use
-  std::string compiler;
-  std::string build_type;
-};
-Machine machine();
 
 /// "0.1.0".
 std::string version();

@@ -1,4 +1,4 @@
-#include "benchmarks/machine.h"
+#include "renderer/machine.h"
 
 #include <fmt/format.h>
 #include <tbb/info.h>
@@ -7,7 +7,7 @@
 
 #include "geometry/embree_intersector.h"
 
-namespace raytree::benchmarks {
+namespace raytree {
 namespace {
 
 std::string processor() {
@@ -24,7 +24,7 @@ std::string compiler() {
 #elif defined(__GNUC__)
   return fmt::format("g++ {}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__);
 #else
-  return "unknown";
+  return "unknown compiler";
 #endif
 }
 
@@ -49,13 +49,9 @@ const char* instruction_set() {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> machine_lines() {
-  return {{"processor", processor()},
-          {"cores", std::to_string(tbb::info::default_concurrency())},
-          {"compiler", compiler()},
-          {"build", RAYTREE_BUILD_TYPE},
-          {"instruction set", instruction_set()},
-          {"tracer", EmbreeIntersector::version()}};
+Machine machine() {
+  return {processor(),       tbb::info::default_concurrency(), compiler(), RAYTREE_BUILD_TYPE,
+          instruction_set(), EmbreeIntersector::version()};
 }
 
-}  // namespace raytree::benchmarks
+}  // namespace raytree

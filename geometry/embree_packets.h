@@ -1,0 +1,58 @@
+// Rays in Embree's own form: packets by their width, and single rays. Included by the sources of EmbreeIntersector and
+// of the bare replay alone.
+#pragma once
+
+#include <cmath>
+
+#include "geometry/embree_api.h"
+#include "geometry/vec.h"
+
+namespace raytree::embree {
+
+/// Embree's types of a packet of 4 or 8 rays.
+template <int Width>
+struct PacketTypes;
+template <>
+struct PacketTypes<8> {
+  using RayHit = RTCRayHit8;
+  using Ray = RTCRay8;
+};
+template <>
+struct PacketTypes<4> {
+  using RayHit = RTCRayHit4;
+  using Ray = RTCRay4;
+};
+
+/// Whether Embree may have this ray: finite, with a direction and an end that is not behind the origin. (Debian's
+/// Embree 3 aborts the process on a NaN.)
+inline bool traceable(const Vec3f& origin, const Vec3f& direction, float max_distance) {
+  return std::isfinite(origin.x + origin.y + origin.z) && std::isfinite(direction.x + direction.y + direction.z) &&
+         direction != Vec3f(0, 0, 0) && max_distance >= 0;
+}
+
+inline RTCRay single_ray(const Vec3f& origin, const Vec3f& direction, float max_distance) {
+  RTCRay ray;
+  ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
+  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+  ray.tnear = 0, ray.tfar = max_distance, ray.time = 0;
+  ray.mask = 0xffffffffu, ray.id = 0, ray.flags = 0;
+  return ray;
+}
+
+/// A single ray that has met nothing yet.
+inline RTCRayHit single_ray_hit(const Vec3f& origin, const Vec3f& direction, float max_distance) {
+  RTCRayHit ray;
+  ray.ray = single_ray(origin, direction, max_distance);
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return ray;
+}
+
+/// Marks a lane of a packet as having met nothing yet.
+template <class Hit>
+void clear_hit(Hit& hit, int lane) {
+  hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+  hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+}
+
+}  // namespace raytree::embree
