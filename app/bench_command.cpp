@@ -9,11 +9,12 @@
 #include "app/commands.h"
 #include "app/exit_status.h"
 #include "app/interruption.h"
-#include "app/machine.h"
 #include "app/messages.h"
+#include "app/process.h"
 #include "app/render_options.h"
 #include "benchmarks/intersection_benchmark.h"
 #include "geometry/embree_intersector.h"
+#include "renderer/machine.h"
 
 namespace raytree::app {
 namespace {

@@ -27,7 +27,9 @@ std::uint64_t memory_limit(std::uint64_t file_bytes) { return 4 * file_bytes + (
 /// Runs `raytree info` on the file; whatever it says of it, the memory stays within the promise.
 ProgramResult judged(const std::string& path) {
   const ProgramResult result = run_program({"info", path});
-  if (!kSanitized) EXPECT_LE(result.peak_memory_bytes, memory_limit(std::filesystem::file_size(path)));
+  if (!kSanitized) {
+    EXPECT_LE(result.peak_memory_bytes, memory_limit(std::filesystem::file_size(path)));
+  }
   return result;
 }
 
