@@ -233,8 +233,8 @@ void read(const Place& at, const Field&, JsonValue value, E& out) {
 void read(const Place& at, const Field&, JsonValue value, Antialiasing& out) {
   const std::string_view text = value.kind() == JsonKind::string ? value.string() : std::string_view();
   constexpr std::string_view kGrid = "grid:";
-  if (text == "none") {
-    out = {};
+  if (text == "none" || text == "whitted") {
+    out = {text == "none" ? Antialiasing::Method::none : Antialiasing::Method::whitted, 1};
     return;
   }
   if (text.starts_with(kGrid)) {
@@ -247,7 +247,8 @@ void read(const Place& at, const Field&, JsonValue value, Antialiasing& out) {
     }
   }
   at.fail(value.line(), "unknown value " + description_of(value) +
-                            "; known values: \"none\", \"grid:N\" with N from 1 to " + std::to_string(kMaxGridSize));
+                            "; known values: \"none\", \"whitted\", \"grid:N\" with N from 1 to " +
+                            std::to_string(kMaxGridSize));
 }
 
 /// `count` numbers into `set(index, number)`.

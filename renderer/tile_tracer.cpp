@@ -11,13 +11,21 @@ namespace {
 /// Eye samples are traced in blocks of so many along x and y, which makes a packet of eight.
 constexpr int kBlockWidth = 4, kBlockHeight = 2;
 
+/// Adaptive sampling looks at what samples hit, whatever the channels are.
+SampleRecords records_for(const ChannelSet& channels, const Antialiasing& antialias) {
+  SampleRecords records = raytree::records_for(channels);
+  records.first_hits |= antialias.method == Antialiasing::Method::whitted;
+  return records;
+}
+
 }  // namespace
 
 TileTracer::TileTracer(const Scene& scene, const RenderOptions& options, Film& film)
     : scene_(scene),
       film_(film),
-      samples_(scene, records_for(options.channels), options.stop),
+      samples_(scene, records_for(options.channels, scene.description.render.antialias), options.stop),
       sums_(records_for(options.channels)) {
+  if (scene.description.render.antialias.method == Antialiasing::Method::whitted) adaptive_.emplace(scene);
   positions_.reserve(kBatchSize);
   places_.reserve(kBatchSize);
 }
@@ -26,9 +34,14 @@ bool TileTracer::trace(int x0, int y0) {
   const auto start = std::chrono::steady_clock::now();
   const Antialiasing& antialias = scene_.description.render.antialias;
   sums_.clear();
-  const int grid = antialias.method == Antialiasing::Method::grid ? antialias.grid_size : 1;
-  if (!trace_grid(x0, y0, grid)) return false;
-  sums_.resolve(x0, y0, grid * grid, film_);
+  if (adaptive_) {
+    if (!adaptive_->trace(x0, y0, samples_, sums_)) return false;
+    sums_.resolve(x0, y0, 1, film_);
+  } else {
+    const int grid = antialias.method == Antialiasing::Method::grid ? antialias.grid_size : 1;
+    if (!trace_grid(x0, y0, grid)) return false;
+    sums_.resolve(x0, y0, grid * grid, film_);
+  }
   samples_.statistics().thread_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return true;

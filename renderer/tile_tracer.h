@@ -1,9 +1,10 @@
 // From samples to pixels: which samples a tile takes, traced in batches, added up and written to the film.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
+#include "renderer/adaptive_sampling.h"
 #include "renderer/film.h"
 #include "renderer/ray_tree.h"
 #include "renderer/render.h"
@@ -33,6 +34,7 @@ class TileTracer {
   Film& film_;
   SampleTracer samples_;
   TileSums sums_;
+  std::optional<AdaptiveSampler> adaptive_;  ///< where the anti-aliasing is Whitted's
 
   // The chunk of a grid's samples under way.
   struct SamplePlace {
