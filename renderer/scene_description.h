@@ -41,7 +41,7 @@ struct Antialiasing {
     grid,    ///< the same samples in every pixel
     whitted  ///< corners, and more where they differ: Whitted 1980, sec. 3; see AdaptiveSampling
   };
-  Method method = Method::none;
+  Method method = Method::whitted;
   int grid_size = 1;  ///< grid: grid_size^2 samples a pixel, at the centers of equal cells
 };
 
