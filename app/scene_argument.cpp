@@ -12,6 +12,7 @@
 #include "geometry/mesh_file.h"
 #include "renderer/builtin_scenes.h"
 #include "renderer/mesh_scene.h"
+#include "renderer/scene_fields.h"
 #include "renderer/scene_reader.h"
 
 namespace raytree::app {
@@ -93,11 +94,13 @@ ImageDescription wanted_image(const SceneFlags& flags) {
 
 Antialiasing parse_antialiasing(const std::string& text) {
   constexpr int kLargestGrid = 64;  // 4096 samples a pixel
-  if (text == "none") return {};
+  if (text == "none") return {Antialiasing::Method::none, 1};
+  if (text == "whitted") return {Antialiasing::Method::whitted, 1};
   if (text.rfind("grid:", 0) == 0)
     return {Antialiasing::Method::grid,
             static_cast<int>(parse_integer("--antialias grid", text.substr(5), 1, kLargestGrid))};
-  throw usage_error(fmt::format("--antialias: \"{}\" is neither none nor grid:N (N x N samples a pixel)", text));
+  throw usage_error(
+      fmt::format("--antialias: \"{}\" is none of: whitted (adaptive), grid:N (N x N samples a pixel), none", text));
 }
 
 SceneDescription read_scene_argument(const SceneFlags& flags, Warnings& warnings) {
@@ -149,8 +152,19 @@ void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
                   "Largest radiance that cutting branches may take from a sample; 0: cut none")
       ->type_name("X")
       ->group("Tracing");
-  command.add_option("--antialias", flags.antialias, "none, or grid:N for N x N samples a pixel")
+  command.add_option("--antialias", flags.antialias, "whitted: adaptive; grid:N: N x N samples a pixel; none")
       ->type_name("METHOD")
+      ->group("Tracing");
+  command
+      .add_option("--threshold", flags.threshold,
+                  "whitted: difference of a square's corners over its edge that divides it, display scale 0 to 1")
+      ->type_name("X")
+      ->group("Tracing");
+  command.add_option("--levels", flags.levels, "whitted: how often a pixel is divided at most")
+      ->type_name("N")
+      ->group("Tracing");
+  command.add_option("--minimum-level", flags.minimum_level, "whitted: how often every pixel is divided")
+      ->type_name("N")
       ->group("Tracing");
 }
 
@@ -164,6 +178,13 @@ void check_scene_flags(const SceneFlags& flags) {
   if (!flags.cutoff.empty() && parse_real("--cutoff", flags.cutoff) < 0)
     throw usage_error(fmt::format("--cutoff: {} is negative; 0 cuts nothing", flags.cutoff));
   if (!flags.antialias.empty()) parse_antialiasing(flags.antialias);
+  if (!flags.threshold.empty() && parse_real("--threshold", flags.threshold) < 0)
+    throw usage_error(fmt::format("--threshold: {} is negative; 0 divides wherever corners differ", flags.threshold));
+  const auto level = [](const char* flag, const std::string& text) {
+    return static_cast<int>(parse_integer(flag, text, 0, kMaxSamplingLevels));
+  };
+  if (!flags.levels.empty()) level("--levels", flags.levels);
+  if (!flags.minimum_level.empty()) level("--minimum-level", flags.minimum_level);
 }
 
 SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
@@ -176,6 +197,15 @@ SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
   if (!flags.depth.empty()) set_value(scene, "--depth", "render.depth", flags.depth);
   if (!flags.cutoff.empty()) scene.render.cutoff = parse_real("--cutoff", flags.cutoff);
   if (!flags.antialias.empty()) scene.render.antialias = parse_antialiasing(flags.antialias);
+  if (!flags.threshold.empty()) set_value(scene, "--threshold", "render.adaptive.threshold", flags.threshold);
+  if (!flags.levels.empty()) set_value(scene, "--levels", "render.adaptive.levels", flags.levels);
+  if (!flags.minimum_level.empty())
+    set_value(scene, "--minimum-level", "render.adaptive.minimum_level", flags.minimum_level);
+  if (const AdaptiveSampling& adaptive = scene.render.adaptive; adaptive.minimum_level > adaptive.levels)
+    throw usage_error(
+        fmt::format("--minimum-level: {} is more than the {} levels that a pixel is divided at most; "
+                    "give --levels too",
+                    adaptive.minimum_level, adaptive.levels));
   if (!flags.camera.empty()) {
     std::vector<std::string> names;
     for (const CameraDescription& camera : scene.cameras) names.push_back(camera.name);

@@ -20,10 +20,11 @@ struct SceneFlags {
   std::string size;               ///< WxH
   std::string camera;             ///< name
   std::vector<std::string> sets;  ///< PATH=VALUE
-  std::string depth, cutoff, antialias;
+  std::string depth, cutoff, antialias, threshold, levels, minimum_level;
 };
 
-/// Adds --size, --camera and --set; with `tracing` also --depth, --cutoff and --antialias.
+/// Adds --size, --camera and --set; with `tracing` also --depth, --cutoff, --antialias and what
+/// tunes it.
 void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing);
 
 /// Throws Error (bad_input) for whatever can be said of the flags without the scene.

@@ -7,6 +7,7 @@
 #include "app/messages.h"
 #include "app/process.h"
 #include "renderer/machine.h"
+#include "renderer/scene_fields.h"
 #include "renderer/scene_reader.h"
 
 namespace raytree::app {
@@ -27,10 +28,6 @@ std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string antialias_name(const Antialiasing& antialias) {
-  return antialias.method == Antialiasing::Method::none ? "none" : fmt::format("grid:{}", antialias.grid_size);
-}
-
 }  // namespace
 
 std::string statistics_json(const RenderReport& report) {
@@ -45,7 +42,7 @@ std::string statistics_json(const RenderReport& report) {
                       {"camera", report.camera},
                       {"depth", report.settings.depth},
                       {"cutoff", report.settings.cutoff},
-                      {"antialias", antialias_name(report.settings.antialias)},
+                      {"antialias", antialiasing_text(report.settings.antialias)},
                       {"threads", report.threads}};
   json["machine"] = {{"processor", here.processor},
                      {"hardware_threads", here.hardware_threads},

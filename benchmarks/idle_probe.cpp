@@ -22,6 +22,7 @@ SceneDescription plain_scene() {
   SceneDescription scene;
   scene.image = {256, 256};
   scene.render.depth = 6;
+  scene.render.antialias = {Antialiasing::Method::none, 1};
   scene.background = ConstantBackground{Rgb(0.4f, 0.6f, 0.8f)};
   CameraDescription camera;
   camera.position = {0, 1.6, 6};

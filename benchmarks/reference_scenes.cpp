@@ -24,7 +24,7 @@ void add_shape(SceneDescription& scene, const char* name, ShapeKind kind, const 
 SceneDescription reference_scene() {
   SceneDescription scene = builtin_scene("spheres-1980");
   scene.image = {1280, 960};
-  scene.render.antialias = Antialiasing();
+  scene.render.antialias = {Antialiasing::Method::none, 1};
   return scene;
 }
 
@@ -50,6 +50,7 @@ SceneDescription trivial_scene() {
   SceneDescription scene;
   scene.name = "trivial";
   scene.image = {64, 64};
+  scene.render.antialias = {Antialiasing::Method::none, 1};
   CameraDescription camera;
   camera.name = "main";
   scene.cameras.push_back(camera);

@@ -38,4 +38,13 @@ Camera::Camera(const CameraDescription& description, int width, int height, cons
   center_y_ = static_cast<float>(height) / 2;
 }
 
+bool Camera::project(const Vec3d& point, Vec2d& image) const {
+  const Vec3d from_eye = point - Vec3d(position_), right(right_), up(up_);
+  const double depth = perspective_ ? from_eye.dot(Vec3d(forward_)) : 1;
+  if (!(depth > 0)) return false;
+  image.x = center_x_ + from_eye.dot(right) / (right.dot(right) * depth);
+  image.y = center_y_ - from_eye.dot(up) / (up.dot(up) * depth);
+  return true;
+}
+
 }  // namespace raytree

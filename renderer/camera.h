@@ -30,6 +30,13 @@ class Camera {
     }
   }
 
+  /// Where a point of scene space is seen: ray()'s inverse. False: at or behind the plane of a perspective eye.
+  bool project(const Vec3d& point, Vec2d& image) const;
+
+  bool is_perspective() const { return perspective_; }
+  const Vec3f& position() const { return position_; }  ///< scene space
+  const Vec3f& forward() const { return forward_; }    ///< unit
+
  private:
   bool perspective_ = true;
   Vec3f position_{0, 0, 0};             ///< scene space

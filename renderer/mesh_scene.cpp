@@ -146,7 +146,6 @@ SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string
   scene.title = std::filesystem::path(name).filename().string();
   scene.image = image;
   scene.render.depth = 4;
-  scene.render.antialias = {Antialiasing::Method::grid, 3};
   scene.cameras = {fitted_camera(*mesh, box, image)};
 
   // A warm key that rakes across the front, so that relief shows; a weak fill against it, so that shadows keep form; a

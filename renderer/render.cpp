@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "renderer/float_mode.h"
-#include "renderer/ray_tree.h"
+#include "renderer/tile_tracer.h"
 
 namespace raytree {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "geometry/embree_intersector.h"
 #include "geometry/open_edges.h"
+#include "renderer/scene_fields.h"
 #include "renderer/shape_assembly.h"
 
 namespace raytree {
@@ -68,6 +69,7 @@ std::vector<std::string> features_in_use(const Scene& scene) {
   if (render.distance_attenuation > 0) features.insert("distance attenuation");
   if (render.cutoff > 0 && (features.count("reflection") || features.count("refraction"))) features.insert("cutoff");
   if (render.antialias.method == Antialiasing::Method::grid) features.insert("antialiasing (grid)");
+  if (render.antialias.method == Antialiasing::Method::whitted) features.insert("antialiasing (whitted)");
   if (scene.background.varies) features.insert("gradient background");
   const ShapeSet& shapes = *scene.shapes;
   if (std::any_of(shapes.meshes.begin(), shapes.meshes.end(),
@@ -79,6 +81,18 @@ std::vector<std::string> features_in_use(const Scene& scene) {
   if (!shapes.planes.empty()) features.insert("planes");
   if (shapes.origin != Vec3d(0, 0, 0)) features.insert("recentering");
   return {features.begin(), features.end()};
+}
+
+void check_adaptive_sampling(const AdaptiveSampling& adaptive, const SourceLocation& where) {
+  if (!(adaptive.threshold >= 0)) throw Error(ErrorKind::bad_input, where, "threshold must not be less than 0");
+  if (adaptive.levels < 0 || adaptive.levels > kMaxSamplingLevels)
+    throw Error(
+        ErrorKind::bad_input, where,
+        "levels must lie from 0 to " + std::to_string(kMaxSamplingLevels) + ", not " + std::to_string(adaptive.levels));
+  if (adaptive.minimum_level < 0 || adaptive.minimum_level > adaptive.levels)
+    throw Error(ErrorKind::bad_input, where,
+                "minimum_level " + std::to_string(adaptive.minimum_level) + " does not lie from 0 to levels, " +
+                    std::to_string(adaptive.levels));
 }
 
 void check_light(const LightDescription& light, const SourceLocation& where) {
@@ -154,6 +168,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   scene.description = std::move(description);
   const Vec3d origin = scene.shapes->origin;
 
+  check_adaptive_sampling(scene.description.render.adaptive, {scene.description.name, 0, "render.adaptive"});
   resolve_materials(scene.description, origin, scene);
   for (const LightDescription& light : scene.description.lights) {
     check_light(light, {scene.description.name, 0, "lights." + light.name});
@@ -165,6 +180,10 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
                         {scene.description.name, 0, "cameras." + camera.name});
   scene.bound =
       RadianceBound(scene.materials, scene.lights, scene.background, scene.ambient, scene.description.render.depth);
+
+  if (scene.description.render.antialias.method == Antialiasing::Method::whitted)
+    scene.small_objects =
+        SmallObjects(*scene.shapes, scene.camera, scene.description.image.width, scene.description.image.height);
 
   std::set<std::string> used;
   for (std::size_t i = 0; i < scene.shape_materials.size(); ++i) {

@@ -18,6 +18,7 @@
 #include "renderer/material.h"
 #include "renderer/radiance_bound.h"
 #include "renderer/scene_description.h"
+#include "renderer/small_objects.h"
 
 namespace raytree {
 
@@ -77,6 +78,7 @@ class Scene {
   Rgb ambient;
   Camera camera;
   RadianceBound bound;
+  SmallObjects small_objects;  ///< as the camera sees them; none unless the anti-aliasing asks for them
 };
 
 /// Loads mesh files, generates and transforms shapes, builds the intersector. Throws Error; what was odd is added to

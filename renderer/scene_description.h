@@ -36,9 +36,22 @@ struct ImageDescription {
 };
 
 struct Antialiasing {
-  enum class Method { none, grid };
-  Method method = Method::none;
+  enum class Method {
+    none,    ///< one sample at the pixel's center
+    grid,    ///< the same samples in every pixel
+    whitted  ///< corners, and more where they differ: Whitted 1980, sec. 3; see AdaptiveSampling
+  };
+  Method method = Method::whitted;
   int grid_size = 1;  ///< grid: grid_size^2 samples a pixel, at the centers of equal cells
+};
+
+/// How Antialiasing::Method::whitted divides a pixel.
+struct AdaptiveSampling {
+  /// A square is divided where its corners differ by more than this over its edge in pixels, on a display-like scale
+  /// from 0 to 1.
+  double threshold = 0.1;
+  int levels = 4;         ///< divisions at most: samples lie no closer than 2^-levels pixels
+  int minimum_level = 0;  ///< divisions at least, whatever the corners show
 };
 
 enum class HighlightForm {
@@ -50,6 +63,7 @@ struct RenderSettings {
   int depth = 8;               ///< levels of the ray tree; the eye ray is level 1
   double cutoff = 1.0 / 1020;  ///< largest radiance that cutting branches may take from a sample; 0: cut none
   Antialiasing antialias;
+  AdaptiveSampling adaptive;
   HighlightForm highlights = HighlightForm::reflected;
   bool shadows = true;
   bool shadowed_highlights =

@@ -23,6 +23,7 @@ namespace raytree {
 inline constexpr double kLargestNumber = 1e18;
 inline constexpr std::int64_t kMaxPixels = std::int64_t(1) << 30;  ///< width * height
 inline constexpr int kMaxGridSize = 64;                            ///< of antialias "grid:N"
+inline constexpr int kMaxSamplingLevels = 6;                       ///< 2^6: as fine as the largest grid
 
 /// What a number, or each component of a vector or color, may be.
 struct Range {
@@ -211,6 +212,23 @@ void visit_fields(Visitor& visit, T& image) {
   visit(Field{.key = "height", .text = "Height", .unit = "pixels", .range = {1, 65536}}, image.height);
 }
 
+template <class Visitor, Is<AdaptiveSampling> T>
+void visit_fields(Visitor& visit, T& adaptive) {
+  visit(Field{.key = "threshold",
+              .text = "A square of a pixel is divided in four where its corners differ by more than this over its edge "
+                      "in pixels; differences are those of a display, black to white is 1",
+              .range = kNotNegative},
+        adaptive.threshold);
+  visit(Field{.key = "levels",
+              .text = "How often a pixel is divided at most; samples lie no closer than 2^-levels pixels",
+              .range = {0, kMaxSamplingLevels}},
+        adaptive.levels);
+  visit(Field{.key = "minimum_level",
+              .text = "How often every pixel is divided whatever its corners show; at most `levels`",
+              .range = {0, kMaxSamplingLevels}},
+        adaptive.minimum_level);
+}
+
 template <class Visitor, Is<RenderSettings> T>
 void visit_fields(Visitor& visit, T& render) {
   visit(Field{.key = "depth", .text = "Levels of the ray tree; the eye ray is level 1", .range = {1, 1'000'000}},
@@ -223,8 +241,9 @@ void visit_fields(Visitor& visit, T& render) {
         render.cutoff);
   visit(Field{.key = "antialias",
               .text = "\"none\" traces pixel centers, \"grid:N\" the centers of N x N equal cells of a pixel, N from 1 "
-                      "to 64"},
+                      "to 64, \"whitted\" the corners of pixels and more samples where those differ"},
         render.antialias);
+  visit(Field{.key = "adaptive", .text = "How \"whitted\" divides pixels"}, render.adaptive);
   visit(Field{.key = "highlights", .text = "Form of the highlight"}, render.highlights);
   visit(Field{.key = "shadows", .text = "Whether things cast shadows"}, render.shadows);
   visit(Field{.key = "shadowed_highlights",
@@ -510,7 +529,8 @@ void visit_fields(Visitor& visit, T& scene) {
 
 /// A struct with a table.
 template <class T>
-concept Table = Is<T, ImageDescription> || Is<T, RenderSettings> || Is<T, CameraDescription> ||
+concept Table =
+    Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> || Is<T, CameraDescription> ||
     Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, HighlightDescription> || Is<T, MaterialDescription> ||
     Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
 
@@ -537,9 +557,17 @@ requires std::is_enum_v<E> std::string_view enum_name(E value) {
   return {};
 }
 
-/// "none" or "grid:N".
+/// "none", "grid:N" or "whitted".
 inline std::string antialiasing_text(const Antialiasing& antialias) {
-  return antialias.method == Antialiasing::Method::none ? "none" : "grid:" + std::to_string(antialias.grid_size);
+  switch (antialias.method) {
+    case Antialiasing::Method::none:
+      return "none";
+    case Antialiasing::Method::grid:
+      return "grid:" + std::to_string(antialias.grid_size);
+    case Antialiasing::Method::whitted:
+      return "whitted";
+  }
+  return {};
 }
 
 /// Calls visit(std::in_place_type<T>) for each alternative T of a variant.

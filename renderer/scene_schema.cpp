@@ -249,7 +249,7 @@ class SchemaWriter {
     static_assert(kMaxGridSize == 64, "the pattern spells it out");
     type("string");
     out_.key("pattern");
-    out_.value("^(none|grid:([1-9]|[1-5][0-9]|6[0-4]))$");
+    out_.value("^(none|whitted|grid:([1-9]|[1-5][0-9]|6[0-4]))$");
   }
   void schema(const Field& field, const Vec2d&) { numbers(field.range, 2); }
   void schema(const Field& field, const Vec3d&) {
@@ -522,6 +522,8 @@ std::string scene_reference() {
   out.table("Top level", "The whole file is one object.", SceneDescription{});
   out.table("image", "The size of the picture.", ImageDescription{});
   out.table("render", "How the picture is traced.", RenderSettings{});
+  out.table("render.adaptive", "The anti-aliasing of Whitted 1980, sec. 3: `\"antialias\": \"whitted\"`.",
+            AdaptiveSampling{});
   out.alternatives("background", Background{});
   out.table("cameras.NAME", "One camera.", CameraDescription{});
   out.table("lights.NAME", "One light; these keys and those of its type.", LightDescription{});

@@ -116,8 +116,8 @@ void read(const Place& at, const Field&, JsonValue value, E& out) {
 inline void read(const Place& at, const Field&, JsonValue value, Antialiasing& out) {
   const std::string_view text = value.kind() == JsonKind::string ? value.string() : std::string_view();
   constexpr std::string_view kGrid = "grid:";
-  if (text == "none") {
-    out = {};
+  if (text == "none" || text == "whitted") {
+    out = {text == "none" ? Antialiasing::Method::none : Antialiasing::Method::whitted, 1};
     return;
   }
   if (text.starts_with(kGrid)) {
@@ -130,7 +130,8 @@ inline void read(const Place& at, const Field&, JsonValue value, Antialiasing& o
     }
   }
   at.fail(value.line(), "unknown value " + description_of(value) +
-                            "; known values: \"none\", \"grid:N\" with N from 1 to " + std::to_string(kMaxGridSize));
+                            "; known values: \"none\", \"whitted\", \"grid:N\" with N from 1 to " +
+                            std::to_string(kMaxGridSize));
 }
 
 /// `count` numbers into `set(index, number)`.

@@ -87,9 +87,10 @@ TEST(CommandLineHelp, EveryFlagIsDocumentedAndEveryDocumentedFlagExists) {
 TEST(CommandLineHelp, RenderHasEveryFlagPromised) {
   const std::string help = run_program({"render", "--help"}).out;
   for (const char* flag :
-       {"-o",         "--size",     "--crop",    "--threads",  "--depth", "--cutoff",  "--antialias", "--camera",
-        "--set",      "--channels", "--half",    "--exposure", "--ocio",  "--display", "--view",      "--stats",
-        "--progress", "--quiet",    "--verbose", "--version",  "--help",  "--format"})
+       {"-o",        "--size",    "--crop",      "--threads", "--depth",         "--cutoff",   "--antialias",
+        "--camera",  "--set",     "--channels",  "--half",    "--exposure",      "--ocio",     "--display",
+        "--view",    "--stats",   "--threshold", "--levels",  "--minimum-level", "--progress", "--quiet",
+        "--verbose", "--version", "--help",      "--format"})
     EXPECT_TRUE(flags_in(help).count(flag)) << flag;
 }
 
@@ -146,6 +147,12 @@ TEST(CommandLineErrors, ValuesOutOfPlaceNameTheFlagAndTheForm) {
   for (const char* cutoff : {"-1", "nan", "inf", "x"}) wrong({"--cutoff", cutoff}, {"--cutoff"});
   for (const char* method : {"grid", "grid:", "grid:0", "grid:x", "grid:100000", "corner"})
     wrong({"--antialias", method}, {"--antialias"});
+  for (const char* threshold : {"-1", "nan", "inf", "x", ""}) wrong({"--threshold", threshold}, {"--threshold"});
+  for (const char* level : {"-1", "7", "2.5", "x", ""}) {
+    wrong({"--levels", level}, {"--levels"});
+    wrong({"--minimum-level", level}, {"--minimum-level"});
+  }
+  wrong({"--minimum-level", "3", "--levels", "2"}, {"--minimum-level", "3", "2 levels"});
   wrong({"--exposure", "bright"}, {"--exposure", "bright"});
   wrong({"--channels", "color,dept"}, {"--channels", "\"dept\"", "did you mean depth?", "truncation, all"});
   wrong({"--channels", "color,"}, {"--channels", "\"\""});
@@ -384,6 +391,8 @@ TEST(CommandLineRender, FlagsReachTheRender) {
   EXPECT_EQ(grid["samples"], 9 * 64 * 48);
   EXPECT_EQ(grid["settings"]["antialias"], "grid:3");
   EXPECT_EQ(grid["counts"]["branches_cut"], 0);
+  const Json adaptive = render({"--antialias", "whitted", "--threshold", "0.1", "--levels", "2"});
+  EXPECT_EQ(adaptive["settings"]["antialias"], "whitted");
   const Json shallow = render({"--antialias", "none", "--depth", "1", "--cutoff", "0.25", "--threads", "3"});
   EXPECT_EQ(shallow["samples"], 64 * 48);
   EXPECT_EQ(shallow["rays"]["reflected"], 0);

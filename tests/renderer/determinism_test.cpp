@@ -116,6 +116,32 @@ TEST(Determinism, PicturesOfRaysAimedAtVerticesAreBitIdentical) {
   expect_the_same_picture_always(vertex_scene(2), "vertices, grid:2");
 }
 
+/// Adds things that samples may miss: specks, a wire, a disc seen nearly from its edge.
+SceneDescription with_small_objects(SceneDescription scene) {
+  for (int i = 0; i < 200; ++i)
+    scene.shapes.push_back(
+        shape(SphereShape{{-3 + 0.37 * (i % 17), 0.11 * (i % 29), 0.13 * (i % 7)}, 0.0005 * (1 + i % 31)},
+              i % 2 == 0 ? "dull" : "mirror"));
+  scene.shapes.push_back(mesh_shape(box_mesh({-4, 1, 1}, {4, 1.002f, 1.002f}), "dull"));
+  scene.shapes.push_back(shape(DiscShape{{0, 1.9, 1}, {0, 1, 0.03}, 1}, "dull"));
+  return scene;
+}
+
+TEST(Determinism, AdaptivelySampledPicturesAreBitIdentical) {
+  SceneDescription scene = with_small_objects(busy_scene());
+  scene.render.antialias.method = Antialiasing::Method::whitted;
+  ASSERT_GT(prepared(scene).small_objects.size(), 100u);
+  scene = with_small_objects(busy_scene());
+  scene.render.antialias.method = Antialiasing::Method::whitted;
+  expect_the_same_picture_always(std::move(scene), "busy, whitted");
+  scene = vertex_scene(1);
+  scene.cameras[0].position += Vec3d(0.5, -0.5, 0);  // corners of pixels on vertices
+  scene.cameras[0].target += Vec3d(0.5, -0.5, 0);
+  scene.render.antialias.method = Antialiasing::Method::whitted;
+  scene.render.adaptive = {0.02, 3, 1};
+  expect_the_same_picture_always(std::move(scene), "vertices, whitted");
+}
+
 TEST(Determinism, TheRaysAimedAtVerticesDoMeetThem) {
   // What the test above rests on: the hits' positions are vertices, to the last bit of x and y.
   const RenderResult result = rendered(vertex_scene(1));

@@ -12,6 +12,10 @@ inline bool equal(const Antialiasing& a, const Antialiasing& b) {
   const auto& [method, size] = a;
   return method == b.method && size == b.grid_size;
 }
+inline bool equal(const AdaptiveSampling& a, const AdaptiveSampling& b) {
+  const auto& [threshold, levels, minimum] = a;
+  return threshold == b.threshold && levels == b.levels && minimum == b.minimum_level;
+}
 inline bool equal(const ImageDescription& a, const ImageDescription& b) {
   const auto& [width, height] = a;
   return width == b.width && height == b.height;
@@ -22,10 +26,10 @@ inline bool equal(const CameraDescription& a, const CameraDescription& b) {
          angle == b.field_of_view && height == b.height;
 }
 inline bool equal(const RenderSettings& a, const RenderSettings& b) {
-  const auto& [depth, cutoff, antialias, highlights, shadows, shadowed, fresnel, attenuation] = a;
-  return depth == b.depth && cutoff == b.cutoff && equal(antialias, b.antialias) && highlights == b.highlights &&
-         shadows == b.shadows && shadowed == b.shadowed_highlights && fresnel == b.fresnel &&
-         attenuation == b.distance_attenuation;
+  const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, shadowed, fresnel, attenuation] = a;
+  return depth == b.depth && cutoff == b.cutoff && equal(antialias, b.antialias) && equal(adaptive, b.adaptive) &&
+         highlights == b.highlights && shadows == b.shadows && shadowed == b.shadowed_highlights &&
+         fresnel == b.fresnel && attenuation == b.distance_attenuation;
 }
 inline bool equal(const ConstantBackground& a, const ConstantBackground& b) {
   const auto& [color] = a;

@@ -74,14 +74,15 @@ TEST(SceneReader, ColorsAreTriplesOrGrays) {
   EXPECT_EQ(refusal(R"("ambient": [0.1, 0.2, -1])"), "s.json:2: ambient[2]: -1 is out of range: must be at least 0");
 }
 
-TEST(SceneReader, AntialiasIsNoneOrAGrid) {
+TEST(SceneReader, AntialiasIsNoneAGridOrWhitteds) {
   EXPECT_EQ(scene_of(R"("render": {"antialias": "grid:3"})").render.antialias.grid_size, 3);
   EXPECT_EQ(scene_of(R"("render": {"antialias": "grid:64"})").render.antialias.grid_size, 64);
   EXPECT_EQ(scene_of(R"("render": {"antialias": "none"})").render.antialias.method, Antialiasing::Method::none);
+  EXPECT_EQ(scene_of(R"("render": {"antialias": "whitted"})").render.antialias.method, Antialiasing::Method::whitted);
   for (const char* bad : {"\"grid\"", "\"grid:\"", "\"grid:0\"", "\"grid:65\"", "\"grid:3x\"", "\"grid:+3\"",
-                          "\"grid:03\"", "\"grid:99999999999\"", "\"\"", "3", "\"whitted\""})
+                          "\"grid:03\"", "\"grid:99999999999\"", "\"\"", "3", "\"whitted:2\"", "\"Whitted\""})
     EXPECT_NE(refusal("\"render\": {\"antialias\": " + std::string(bad) + "}")
-                  .find("known values: \"none\", \"grid:N\" with N from 1 to 64"),
+                  .find("known values: \"none\", \"whitted\", \"grid:N\" with N from 1 to 64"),
               std::string::npos)
         << bad;
 }
@@ -544,7 +545,8 @@ class Randomizer {
     x = entries[static_cast<std::size_t>(whole(0, static_cast<int>(entries.size()) - 1))].value;
   }
   void fill(const Field&, Antialiasing& x) {
-    x = whole(0, 1) == 0 ? Antialiasing{} : Antialiasing{Antialiasing::Method::grid, whole(1, kMaxGridSize)};
+    const auto method = static_cast<Antialiasing::Method>(whole(0, 2));
+    x = {method, method == Antialiasing::Method::grid ? whole(1, kMaxGridSize) : 1};
   }
   void fill(const Field& field, Vec2d& x) { x = {number(field.range), number(field.range)}; }
   void fill(const Field& field, Vec3d& x) { x = {number(field.range), number(field.range), number(field.range)}; }
@@ -645,7 +647,8 @@ TEST(SceneFields, TablesHoldEveryMember) {
     return counter.count;
   };
   EXPECT_EQ(count(ImageDescription{}), 2);
-  EXPECT_EQ(count(RenderSettings{}), 8);
+  EXPECT_EQ(count(RenderSettings{}), 9);
+  EXPECT_EQ(count(AdaptiveSampling{}), 3);
   EXPECT_EQ(count(CameraDescription{}), 7 - 1) << "without name";
   EXPECT_EQ(count(ConstantBackground{}), 1);
   EXPECT_EQ(count(GradientBackground{}), 3);

@@ -117,7 +117,8 @@ std::string reader_refusal(const Json& document) {
 Json rich_document() {
   return Json::parse(R"({
     "raytree": 1, "title": "t", "image": {"width": 10, "height": 10},
-    "render": {"depth": 3, "cutoff": 0, "antialias": "grid:2", "highlights": "halfway", "shadows": true,
+    "render": {"depth": 3, "cutoff": 0, "antialias": "grid:2",
+               "adaptive": {"threshold": 0.1, "levels": 3, "minimum_level": 1}, "highlights": "halfway", "shadows": true,
                "shadowed_highlights": true, "fresnel": false, "distance_attenuation": 0},
     "background": {"type": "gradient", "bottom": 0, "horizon": [0, 0, 1], "top": 1}, "ambient": 0.1,
     "cameras": {"main": {"projection": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "up": [0, 1, 0],
@@ -203,6 +204,7 @@ TEST(SceneSchema, AgreesWithTheReaderAboutChangedDocuments) {
                                  "m",
                                  "grid:64",
                                  "grid:65",
+                                 "whitted",
                                  "xz",
                                  "point",
                                  "constant",

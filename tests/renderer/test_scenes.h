@@ -141,7 +141,8 @@ inline CameraDescription front_camera(double height, double distance = 10) {
   return camera;
 }
 
-/// No light, no ambient light, black background, nothing cut, square image: each test adds what it is about.
+/// No light, no ambient light, black background, nothing cut, one sample at each pixel's center, square image: each
+/// test adds what it is about.
 inline SceneDescription dark_scene(int size, const CameraDescription& camera) {
   SceneDescription scene;
   scene.name = "test.json";
@@ -150,6 +151,7 @@ inline SceneDescription dark_scene(int size, const CameraDescription& camera) {
   scene.ambient = Rgb(0);
   scene.background = ConstantBackground{Rgb(0)};
   scene.render.cutoff = 0;
+  scene.render.antialias = {Antialiasing::Method::none, 1};
   return scene;
 }
 
