@@ -1,15 +1,13 @@
 // `raytree bench`: builds a scene's tracer and asks it rays of five kinds again and again. Nothing is shaded.
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/exit_status.h"
-#include "app/interruption.h"
 #include "app/messages.h"
+#include "app/prepared_scene.h"
 #include "app/process.h"
 #include "app/render_options.h"
 #include "benchmarks/intersection_benchmark.h"
@@ -116,15 +114,7 @@ std::string report_text(const Report& report) {
   return text;
 }
 
-Report measured(const BenchOptions& options, const Interruption& interruption) {
-  Warnings warnings;
-  SceneDescription description = load_scene(options.scene, warnings);
-  PrepareOptions prepare_options;
-  prepare_options.camera = options.scene.camera;
-  prepare_options.threads = options.threads;
-  prepare_options.stop = &interruption.stop();
-  const Scene scene = prepare(std::move(description), prepare_options, warnings);
-  if (!options.quiet) print_warnings(warnings, true);
+Report measured(const BenchOptions& options, const Scene& scene, const Interruption& interruption) {
   Report report;
   report.scene = scene.description.name;
   report.width = scene.description.image.width, report.height = scene.description.image.height;
@@ -144,21 +134,15 @@ Report measured(const BenchOptions& options, const Interruption& interruption) {
 int bench_command(const Words& words) {
   const std::optional<BenchOptions> options = parse_bench_options(words);
   if (!options) return kSuccess;
-  const Interruption interruption(nullptr);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(options->threads));
-  tbb::task_arena arena(options->threads);
-  try {
-    const Report report = arena.execute([&] { return measured(*options, interruption); });
-    if (!interruption.stop()) {
-      print_result(options->json ? report_json(report) : report_text(report));
-      for (const IntersectionFigure& figure : report.figures)
-        if (!figure.repeatable) throw Error(ErrorKind::failure, {}, "passes over the same rays gave different hits");
-    }
-  } catch (const Error&) {
-    if (!interruption.stop()) throw;
-  }
-  return interruption.stop() ? kSignalBase + interruption.signal() : kSuccess;
+  return with_prepared_scene({options->scene, options->threads, true, options->quiet},
+                             [&](const Scene& scene, const Interruption& interruption) {
+                               const Report report = measured(*options, scene, interruption);
+                               if (interruption.stop()) return;
+                               print_result(options->json ? report_json(report) : report_text(report));
+                               for (const IntersectionFigure& figure : report.figures)
+                                 if (!figure.repeatable)
+                                   throw Error(ErrorKind::failure, {}, "passes over the same rays gave different hits");
+                             });
 }
 
 }  // namespace raytree::app

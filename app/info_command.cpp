@@ -1,8 +1,6 @@
 // `raytree info`: what is in a scene, what it will take and which parts of the renderer it switches on. Meshes are
 // loaded, nothing is built or traced.
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,8 +8,8 @@
 
 #include "app/commands.h"
 #include "app/exit_status.h"
-#include "app/interruption.h"
 #include "app/messages.h"
+#include "app/prepared_scene.h"
 #include "app/render_options.h"
 #include "app/suggestion.h"
 #include "renderer/scene.h"
@@ -206,27 +204,10 @@ std::string info_text(const Scene& scene, const InfoOptions& options) {
 int info_command(const Words& words) {
   const std::optional<InfoOptions> options = parse_info_options(words);
   if (!options) return kSuccess;
-  const Interruption interruption(nullptr);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(options->threads));
-  tbb::task_arena arena(options->threads);
-  try {
-    arena.execute([&] {
-      Warnings warnings;
-      SceneDescription description = load_scene(options->scene, warnings);
-      PrepareOptions prepare_options;
-      prepare_options.camera = options->scene.camera;
-      prepare_options.threads = options->threads;
-      prepare_options.stop = &interruption.stop();
-      prepare_options.build = false;
-      const Scene scene = prepare(std::move(description), prepare_options, warnings);
-      if (!options->quiet) print_warnings(warnings, true);
-      print_result(options->json ? info_json(scene, *options) : info_text(scene, *options));
-    });
-  } catch (const Error&) {
-    if (!interruption.stop()) throw;
-  }
-  return interruption.stop() ? kSignalBase + interruption.signal() : kSuccess;
+  return with_prepared_scene({options->scene, options->threads, false, options->quiet},
+                             [&](const Scene& scene, const Interruption&) {
+                               print_result(options->json ? info_json(scene, *options) : info_text(scene, *options));
+                             });
 }
 
 }  // namespace raytree::app
