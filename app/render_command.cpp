@@ -89,7 +89,7 @@ class RenderRun {
         std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     // Loaded while the tracing runs, and no sooner: the dynamic loader's lock, held for a third of a second, would stop
     // OpenColorIO, TBB and Embree, which open libraries of their own as they start.
-    preload_image_io();
+    for (const OutputFile& output : options_.outputs) preload_image_io(output.format);
     progress_.begin_tracing();
     RenderResult result = render(scene, render_options);
     check_interruption();

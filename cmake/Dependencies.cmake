@@ -2,6 +2,7 @@
 # (off the search path; drags in OpenCV's include paths), so those two come through pkg-config.
 find_package(Threads REQUIRED)
 find_package(Imath CONFIG REQUIRED)
+find_package(OpenEXR CONFIG REQUIRED)
 find_package(TBB CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)

@@ -1,5 +1,5 @@
-// The program's side of image files: picks the format, opens the module raytree_image_io on demand, hands planes over
-// and takes bytes or planes back. Writing to disk is atomic_file.cpp's.
+// The program's side of image files: picks the format, opens the module that knows it on demand, hands planes over and
+// takes bytes or planes back. Writing to disk is atomic_file.cpp's.
 #include "renderer/image_file.h"
 
 #include <dlfcn.h>
@@ -23,15 +23,14 @@
 namespace raytree {
 namespace {
 
-constexpr const char* kModuleName = "raytree_image_io.so";
-
-std::vector<std::string> module_candidates() {
-  if (const char* given = std::getenv("RAYTREE_IMAGE_IO"); given != nullptr && *given != '\0') return {given};
+std::vector<std::string> module_candidates(const std::string& name) {
+  if (const char* given = std::getenv("RAYTREE_MODULES"); given != nullptr && *given != '\0')
+    return {std::string(given) + "/" + name};
   std::vector<std::string> paths;
   const auto add_around = [&](const std::string& folder) {
     for (const std::string_view place :
          {"/../lib/", "/../lib/raytree/", "/../" RAYTREE_INSTALL_LIBDIR "/raytree/", "/"}) {
-      std::string path = folder + std::string(place) + kModuleName;
+      std::string path = folder + std::string(place) + name;
       if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(std::move(path));
     }
   };
@@ -51,9 +50,10 @@ std::vector<std::string> module_candidates() {
   return paths;
 }
 
-// The module, opened once; never closed, since the libraries behind it keep threads.
+// A module, opened once; never closed, since the libraries behind it keep threads.
 class Module {
  public:
+  explicit Module(std::string name) : name_(std::move(name)) {}
   ~Module() {
     if (loader_.joinable()) loader_.join();
   }
@@ -70,7 +70,7 @@ class Module {
 
   const RaytreeImageIo& table() {
     load_once();
-    if (table_ == nullptr) throw Error(ErrorKind::failure, {kModuleName, 0, ""}, problem_);
+    if (table_ == nullptr) throw Error(ErrorKind::failure, {name_, 0, ""}, problem_);
     return *table_;
   }
 
@@ -83,7 +83,7 @@ class Module {
 
   void load() {
     problem_ = "the module for image files cannot be opened; tried";
-    for (const std::string& path : module_candidates()) {
+    for (const std::string& path : module_candidates(name_)) {
       void* library = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
       if (library == nullptr) {
         const char* reason = ::dlerror();
@@ -101,6 +101,7 @@ class Module {
     }
   }
 
+  const std::string name_;
   std::mutex mutex_;
   std::once_flag once_;
   std::thread loader_;
@@ -109,10 +110,18 @@ class Module {
   std::string problem_;
 };
 
-Module& module() {
-  static Module instance;
+/// Of all formats but EXR, and of reading.
+Module& image_module() {
+  static Module instance("raytree_image_io.so");
   return instance;
 }
+
+Module& exr_module() {
+  static Module instance("raytree_exr_io.so");
+  return instance;
+}
+
+Module& encoding_module(ImageFormat format) { return format == ImageFormat::exr ? exr_module() : image_module(); }
 
 int module_type(PixelType type) {
   switch (type) {
@@ -185,7 +194,7 @@ ImageFormat image_format(const std::string& path) {
 
 bool holds_alpha(ImageFormat format) { return format != ImageFormat::jpeg; }
 
-void preload_image_io() { module().preload(); }
+void preload_image_io(ImageFormat format) { encoding_module(format).preload(); }
 
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, EncodeReport* report) {
   std::vector<RaytreePlane> planes;
@@ -208,7 +217,7 @@ std::vector<std::byte> encode_image(const Image& image, ImageFormat format, Enco
   request.format = module_format(format);
   request.threads = static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 
-  const RaytreeImageIo& io = module().table();
+  const RaytreeImageIo& io = encoding_module(format).table();
   Encoding result;
   std::int64_t half_clamped = 0;
   const auto take_bytes = [](void* context, const void* bytes, std::size_t size) {
@@ -236,7 +245,7 @@ int DecodedImage::plane_index(const std::string& name) const {
 }
 
 DecodedImage read_image_file(const std::string& path) {
-  const RaytreeImageIo& io = module().table();
+  const RaytreeImageIo& io = image_module().table();
   DecodedImage image;
   RaytreeImageSink sink{};
   sink.context = &image;

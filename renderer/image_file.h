@@ -1,6 +1,6 @@
-// Image files: planes of pixels in, one whole file out (or none), and back. The work is done by the shared module
-// raytree_image_io, the only place that links OpenImageIO; it is opened on first use, or ahead of it in the
-// background, since loading OpenImageIO costs a third of a second.
+// Image files: planes of pixels in, one whole file out (or none), and back. The work is done by two shared modules that
+// are opened on first use, or ahead of it in the background: raytree_exr_io writes EXR through OpenEXR;
+// raytree_image_io does the rest through OpenImageIO, whose loading costs a third of a second.
 #pragma once
 
 #include <cstddef>
@@ -38,11 +38,12 @@ ImageFormat image_format(const std::string& path);
 /// Whether files of this format can hold an alpha channel.
 bool holds_alpha(ImageFormat format);
 
-/// Begins loading the module in a background thread; returns at once. Later calls wait for it, and so does the
-/// program's exit. The module is $RAYTREE_IMAGE_IO if that is set; else raytree_image_io.so beside the program, in
-/// ../lib, ../lib/raytree or the installation's library folder relative to it. That it is missing is reported by the
+/// Begins loading the module that encodes `format` in a background thread; returns at once. Later calls wait for it,
+/// and so does the program's exit. Modules lie in the folder $RAYTREE_MODULES if that is set; else beside the program,
+/// in
+/// ../lib, ../lib/raytree or the installation's library folder relative to it. That one is missing is reported by the
 /// call that needs it, as an Error (failure) that names the paths tried.
-void preload_image_io();
+void preload_image_io(ImageFormat format);
 
 struct EncodeReport {
   std::int64_t half_clamped = 0;  ///< finite values beyond 65504 that became 65504 in planes of type half

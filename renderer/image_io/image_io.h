@@ -1,5 +1,5 @@
-// What crosses the border between the program and the module raytree_image_io: plain C types only, no exception and no
-// C++ object, so that either side may be built on its own. Both sides check kRaytreeImageIoVersion.
+// What crosses the border between the program and the modules raytree_image_io and raytree_exr_io: plain C types only,
+// no exception and no C++ object, so that either side may be built on its own. Both sides check kRaytreeImageIoVersion.
 #pragma once
 
 #include <stddef.h>
@@ -7,7 +7,7 @@
 
 extern "C" {
 
-enum { kRaytreeImageIoVersion = 1 };
+enum { kRaytreeImageIoVersion = 2 };
 
 enum RaytreePixelType {
   kRaytreeUint8 = 0,
@@ -63,11 +63,12 @@ struct RaytreeImageSink {
 struct RaytreeImageIo {
   int version;
   // Each returns 1, or 0 after handing a message to `error`. half_clamped counts finite values beyond the largest half.
+  // decode is null in raytree_exr_io.
   int (*encode)(const RaytreeImage* image, RaytreeBytesSink bytes, RaytreeBytesSink error, void* context,
                 int64_t* half_clamped);
   int (*decode)(const char* path, const RaytreeImageSink* sink, RaytreeBytesSink error, void* error_context);
 };
 
-// The module's one symbol.
+// The one symbol of each module.
 const RaytreeImageIo* raytree_image_io();
 }

@@ -594,28 +594,33 @@ TEST_F(ImageFileTest, ExitDuringThePreloadIsSafe) {
 TEST(PreloadChild, DISABLED_Exits) {
   const char* pause = std::getenv("RAYTREE_PRELOAD_TEST");
   ASSERT_NE(pause, nullptr) << "run by ExitDuringThePreloadIsSafe";
-  preload_image_io();
-  preload_image_io();
+  preload_image_io(ImageFormat::png);
+  preload_image_io(ImageFormat::png);
+  preload_image_io(ImageFormat::exr);
   std::this_thread::sleep_for(std::chrono::milliseconds(std::atoi(pause)));
   std::exit(0);
 }
 
 TEST(MissingModuleChild, DISABLED_Reports) {
-  preload_image_io();
   const Film film(2, 2, {0, 0, 2, 2}, {ChannelGroup::color});
-  for (int i = 0; i < 2; ++i) try {
-      encode_image(scene_linear_image(film, false, {}), ImageFormat::exr);
-      FAIL();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::failure);
-      EXPECT_TRUE(contains(error.what(), "/nowhere/module.so")) << error.what();
-    }
+  const Image image = scene_linear_image(film, false, {});
+  for (const auto& [format, module] : {std::pair(ImageFormat::exr, "/nowhere/raytree_exr_io.so"),
+                                       std::pair(ImageFormat::png, "/nowhere/raytree_image_io.so")}) {
+    preload_image_io(format);
+    for (int i = 0; i < 2; ++i) try {
+        encode_image(image, format);
+        FAIL();
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::failure);
+        EXPECT_TRUE(contains(error.what(), module)) << error.what();
+      }
+  }
 }
 
 TEST_F(ImageFileTest, MissingModuleIsAnErrorThatNamesThePath) {
   const pid_t child = fork();
   if (child == 0) {
-    setenv("RAYTREE_IMAGE_IO", "/nowhere/module.so", 1);
+    setenv("RAYTREE_MODULES", "/nowhere", 1);
     execl("/proc/self/exe", "renderer_tests", "--gtest_filter=MissingModuleChild.DISABLED_Reports",
           "--gtest_also_run_disabled_tests", "--gtest_brief=1", nullptr);
     _exit(9);
