@@ -25,6 +25,7 @@ std::vector<Figure> measure_large(const MeasureContext& context);
 std::vector<Figure> measure_idle(const MeasureContext& context);
 std::vector<Figure> measure_time_split(const MeasureContext& context);
 std::vector<Figure> measure_loading(const MeasureContext& context);
+std::vector<Figure> measure_povray(const MeasureContext& context);
 std::vector<Figure> measure_intersection_overhead(const MeasureContext& context);
 
 struct Row {
@@ -35,6 +36,7 @@ inline constexpr Row kRows[] = {
     {"floor", measure_floor},      {"waves", measure_waves},     {"threads", measure_threads},
     {"start", measure_start},      {"large", measure_large},     {"idle", measure_idle},
     {"split", measure_time_split}, {"loading", measure_loading}, {"bench", measure_intersection_overhead},
+    {"povray", measure_povray},
 };
 
 /// What `large` compares with, measured in a process of its own (see large.cpp): generates the terrain, builds over it

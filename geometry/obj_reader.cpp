@@ -156,12 +156,16 @@ struct GroupChange {
 struct Findings {
   const char* error_place = nullptr;
   std::string error;
-  Tally extra_components, unknown, line_or_point, free_form, library, changes_dropped;
+  Tally extra_components, unknown, line_or_point, free_form, libraries_dropped;
   Bounds3d box;
   std::vector<GroupChange> changes;
+  std::vector<const char*> libraries;
   const char* last_name = nullptr;
   const char* last_material = nullptr;
 };
+
+/// Of one mesh; exporters write one or a few.
+constexpr std::size_t kMaxLibraries = 256;
 
 class ObjParser {
  public:
@@ -186,6 +190,7 @@ class ObjParser {
     report_first_error();
     move_origin();
     join_groups();
+    join_libraries();
     join_warnings();
     const MeshLocator locate{[this](std::size_t i) { return locate_statement(Statement::position, i); },
                              [this](std::size_t i) { return locate_statement(Statement::face, i); }};
@@ -376,7 +381,10 @@ class ObjParser {
                              names_changed = true;
                              break;
                            case Statement::library:
-                             found.library.add(source);
+                             if (found.libraries.size() < kMaxLibraries)
+                               found.libraries.push_back(source);
+                             else
+                               found.libraries_dropped.add(source);
                              break;
                            case Statement::line_or_point:
                              found.line_or_point.add(source);
@@ -480,6 +488,19 @@ class ObjParser {
     if (groups.size() == 1 && groups[0].name.empty() && groups[0].material.empty()) groups.clear();
   }
 
+  void join_libraries() {
+    for (Findings& found : findings_)
+      for (const char* const place : found.libraries) {
+        std::string library = name_at(place);
+        std::vector<std::string>& known = mesh_.material_libraries;
+        if (std::find(known.begin(), known.end(), library) != known.end()) continue;
+        if (known.size() < kMaxLibraries)
+          known.push_back(std::move(library));
+        else
+          found.libraries_dropped.add(place);
+      }
+  }
+
   void join_warnings() {
     Findings all;
     for (const Findings& found : findings_) {
@@ -487,8 +508,7 @@ class ObjParser {
       all.unknown.add(found.unknown);
       all.line_or_point.add(found.line_or_point);
       all.free_form.add(found.free_form);
-      all.library.add(found.library);
-      all.changes_dropped.add(found.changes_dropped);
+      all.libraries_dropped.add(found.libraries_dropped);
     }
     const auto warn = [&](const Tally& tally, const std::string& message) {
       if (tally.count > 0) warnings_.push_back({location(tally.first), message, tally.count});
@@ -497,10 +517,9 @@ class ObjParser {
     if (all.unknown.count > 0)
       warn(all.unknown,
            "unknown statements skipped, the first is " + in_quotes(word_at(skip_blanks(all.unknown.first, end), end)));
-    warn(all.changes_dropped, "groups of a text that names too many joined with the one before");
     warn(all.line_or_point, "lines and points dropped: only faces are drawn");
     warn(all.free_form, "statements of free-form curves and surfaces dropped");
-    warn(all.library, "material libraries not read");
+    warn(all.libraries_dropped, "material libraries beyond the first 256 not read");
     warn(all.extra_components,
          "vertices with more than three components, of which the others (weight or color) are "
          "dropped");

@@ -1,4 +1,4 @@
-// Wavefront OBJ: v, vn, vt, f, g, o, usemtl; n-gons kept; relative indices; everything else skipped.
+// Wavefront OBJ: v, vn, vt, f, g, o, usemtl, mtllib; n-gons kept; relative indices; everything else skipped.
 #pragma once
 
 #include <string>

@@ -37,6 +37,9 @@ struct PolygonMesh {
 
   std::vector<FaceGroup> groups;  ///< empty: no groups named
 
+  /// OBJ `mtllib`: what follows the word, in file order; one name, or several between blanks.
+  std::vector<std::string> material_libraries;
+
   bool all_triangles() const { return face_sizes.empty(); }
   std::size_t face_count() const { return all_triangles() ? corners.size() / 3 : face_sizes.size(); }
 };

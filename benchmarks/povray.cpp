@@ -1,0 +1,335 @@
+// Row povray: the same pictures by POV-Ray, one thread of each: tracing alone, a ray, a picture with anti-aliasing of
+// equal error, from launch to file; and whether both see the same shapes at the same distance.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "benchmarks/child_process.h"
+#include "benchmarks/povray_scene.h"
+#include "benchmarks/reference_scenes.h"
+#include "benchmarks/rows.h"
+#include "geometry/error.h"
+#include "renderer/image_file.h"
+#include "renderer/render.h"
+#include "renderer/scene_reader.h"
+
+namespace raytree::benchmarks {
+namespace {
+
+constexpr double kTraceRatio = 5, kRayRatio = 2.5, kAdaptiveRatio = 5, kLaunchRatio = 8;
+constexpr std::uint32_t kLargest16 = 65535;
+
+/// Red, green and blue of each pixel, in [0, 1] as a 16-bit file holds them.
+using Picture = std::vector<float>;
+
+class Povray {
+ public:
+  Povray(const MeasureContext& context, const Scene& scene, PovrayPicture picture, double reach,
+         const std::string& name)
+      : scratch_(context.scratch),
+        scene_file_(context.scratch / (name + ".pov")),
+        picture_(context.scratch / (name + ".png")) {
+    write_povray_scene(scene_file_, scene, picture, reach);
+    size_ = {fmt::format("+W{}", scene.description.image.width), fmt::format("+H{}", scene.description.image.height)};
+  }
+
+  /// Renders with one thread and 16 bits of linear light; `flags`: of its anti-aliasing.
+  ChildResult run(const std::vector<std::string>& flags) const {
+    std::vector<std::string> words{"povray",
+                                   "+I" + scene_file_.string(),
+                                   "+O" + picture_.string(),
+                                   "+FN16",
+                                   "File_Gamma=1.0",
+                                   "+WT1",
+                                   "-D",
+                                   "-V",
+                                   "-GA",
+                                   "+GS"};
+    words.insert(words.end(), size_.begin(), size_.end());
+    words.insert(words.end(), flags.begin(), flags.end());
+    const ChildResult child = run_child(words, scratch_);
+    require_success(child, "povray");
+    return child;
+  }
+  PovrayStatistics trace(const std::vector<std::string>& flags) const {
+    return parse_povray_statistics(run(flags).errors);
+  }
+
+  Picture picture() const {
+    const DecodedImage image = read_image_file(picture_);
+    Picture result;
+    for (const char* name : {"R", "G", "B"}) {
+      // A picture without color is written as one of brightness alone.
+      const int plane = std::max(0, image.plane_index(name));
+      const std::vector<float>& values = image.planes.at(static_cast<std::size_t>(plane));
+      result.insert(result.end(), values.begin(), values.end());
+    }
+    return result;
+  }
+
+ private:
+  std::filesystem::path scratch_, scene_file_, picture_;
+  std::vector<std::string> size_;
+};
+
+struct Traced {
+  double seconds = 0, rays = 0;
+  Film film;
+};
+
+Traced traced(Scene& scene, const RenderSettings& settings, ChannelSet channels = {ChannelGroup::color}) {
+  scene.description.render = settings;
+  RenderOptions options;
+  options.threads = 1;
+  options.channels = channels;
+  RenderResult result = render(scene, options);
+  const auto count = [&](RayKind kind) { return static_cast<double>(result.statistics.rays[static_cast<int>(kind)]); };
+  return {result.statistics.thread_seconds,
+          count(RayKind::primary) + count(RayKind::reflected) + count(RayKind::refracted), std::move(result.film)};
+}
+
+/// As the 16-bit file of the other has it: clipped and rounded.
+Picture picture_of(const Film& film) {
+  Picture result;
+  const auto pixels = static_cast<std::size_t>(film.window().width) * static_cast<std::size_t>(film.window().height);
+  for (int channel = 0; channel < 3; ++channel) {
+    const float* const plane = film.plane(ChannelGroup::color, channel);
+    for (std::size_t i = 0; i < pixels; ++i)
+      result.push_back(std::round(std::clamp(plane[i], 0.0f, 1.0f) * kLargest16) / kLargest16);
+  }
+  return result;
+}
+
+double root_mean_square_difference(const Picture& a, const Picture& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * double(a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+Figure figure_of(const std::string& what, const Spread& measured, BoundKind kind, double bound,
+                 const std::string& note) {
+  Figure figure;
+  figure.row = "povray";
+  figure.what = what;
+  figure.measured = measured;
+  figure.kind = kind;
+  figure.bound = bound;
+  figure.note = note;
+  return figure;
+}
+
+PairLimits few_pairs() {
+  PairLimits limits;
+  limits.least = 5;
+  limits.most = 9;
+  return limits;
+}
+
+/// Tracing without anti-aliasing: seconds of CPU time over seconds, and the same for one ray.
+void measure_tracing(const MeasureContext& context, Scene& scene, const std::string& name,
+                     std::vector<Figure>& figures) {
+  context.progress("povray: tracing " + scene.description.name);
+  const Povray povray(context, scene, PovrayPicture::shaded, 0, name);
+  RenderSettings settings = scene.description.render;
+  settings.antialias = {Antialiasing::Method::none, 1};
+  double their_rays = 0, our_rays = 0;
+  const PairedSpread pairs = measure_pairs(
+      [&] {
+        const PovrayStatistics statistics = povray.trace({"-A"});
+        their_rays = statistics.rays;
+        return statistics.trace_cpu_seconds;
+      },
+      [&] {
+        const Traced ours = traced(scene, settings);
+        our_rays = ours.rays;
+        return ours.seconds;
+      },
+      few_pairs());
+  const double share = our_rays / their_rays;
+  const std::string note =
+      fmt::format("{:.3f} s of CPU time against {:.3f} s; {:.0f} against {:.0f} rays, shadow rays not counted",
+                  pairs.a.median, pairs.b.median, their_rays, our_rays);
+  figures.push_back(figure_of("POV-Ray's tracing time / ours, no anti-aliasing, " + picture_text(scene, 1), pairs.ratio,
+                              BoundKind::at_least, kTraceRatio, note));
+  Spread a_ray = pairs.ratio;
+  a_ray.low *= share, a_ray.median *= share, a_ray.high *= share;
+  figures.push_back(figure_of("the same a ray, " + picture_text(scene, 1), a_ray, BoundKind::at_least, kRayRatio, ""));
+}
+
+/// POV-Ray's recursive anti-aliasing at its default settings, and ours at the cheapest of a series that is no further
+/// from its own converged picture.
+Figure adaptive_figure(const MeasureContext& context, Scene& scene, const std::string& name) {
+  context.progress("povray: anti-aliasing, " + scene.description.name);
+  const std::vector<std::string> theirs{"+A0.3", "+AM2", "+R3", "-J"};
+  const Povray povray(context, scene, PovrayPicture::shaded, 0, name);
+  RenderSettings settings = scene.description.render;
+  povray.run({"+A0.0", "+AM1", "+R9", "-J"});
+  const Picture their_truth = povray.picture();
+  povray.run(theirs);
+  const double their_error = root_mean_square_difference(povray.picture(), their_truth);
+
+  settings.antialias = {Antialiasing::Method::grid, 16};
+  const Picture our_truth = picture_of(traced(scene, settings).film);
+  settings.antialias = {Antialiasing::Method::whitted, 1};
+  RenderSettings best = settings;
+  double our_error = 0, least = std::numeric_limits<double>::infinity();
+  for (const int levels : {1, 2, 3, 4, 5})
+    for (const double threshold : {0.4, 0.2, 0.1, 0.05, 0.025}) {
+      settings.adaptive.levels = levels;
+      settings.adaptive.threshold = threshold;
+      const Traced ours = traced(scene, settings);
+      const double error = root_mean_square_difference(picture_of(ours.film), our_truth);
+      if (error > their_error || ours.seconds >= least) continue;
+      least = ours.seconds;
+      our_error = error;
+      best = settings;
+    }
+  const std::string what =
+      "POV-Ray's tracing time (+A0.3 +AM2 +R3) / ours, adaptive, at no more error, " + picture_text(scene, 1);
+  if (!std::isfinite(least)) {
+    Figure figure = figure_of(what, {}, BoundKind::at_least, kAdaptiveRatio, "");
+    figure.problem = fmt::format("no setting of ours is within an error of {:.5f}", their_error);
+    return figure;
+  }
+  const PairedSpread pairs = measure_pairs([&] { return povray.trace(theirs).trace_cpu_seconds; },
+                                           [&] { return traced(scene, best).seconds; }, few_pairs());
+  return figure_of(what, pairs.ratio, BoundKind::at_least, kAdaptiveRatio,
+                   fmt::format("{:.3f} s against {:.3f} s; root mean square error {:.5f} against {:.5f} (threshold {}, "
+                               "levels {}), each to its own picture of 81 and 256 samples a pixel",
+                               pairs.a.median, pairs.b.median, their_error, our_error, best.adaptive.threshold,
+                               best.adaptive.levels));
+}
+
+void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh, const Vec3d& origin) {
+  std::ofstream file(path);
+  for (const Vec3f& p : mesh.positions)
+    file << fmt::format("v {} {} {}\n", p.x + origin.x, p.y + origin.y, p.z + origin.z);
+  for (const Vec3f& n : mesh.normals) file << fmt::format("vn {} {} {}\n", n.x, n.y, n.z);
+  for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
+    file << 'f';
+    for (std::size_t k = i; k < i + 3; ++k) {
+      file << ' ' << mesh.corners[k] + 1;
+      if (!mesh.normals.empty())
+        file << "//" << (mesh.normal_corners.empty() ? mesh.corners[k] : mesh.normal_corners[k]) + 1;
+    }
+    file << '\n';
+  }
+  if (!file.flush()) throw Error(ErrorKind::failure, {path.string(), 0, {}}, "cannot be written");
+}
+
+/// The scene as a file whose terrain is an OBJ file beside it: what it was before it was prepared, and its meshes.
+std::filesystem::path write_scene_with_mesh_file(const std::filesystem::path& folder, SceneDescription description,
+                                                 const Scene& scene) {
+  for (std::size_t i = 0; i < description.shapes.size(); ++i) {
+    if (!std::holds_alternative<TerrainShape>(description.shapes[i].kind)) continue;
+    for (const MeshEntry& entry : scene.shapes->meshes)
+      if (entry.shape == i) write_obj(folder / "terrain.obj", entry.mesh, scene.shapes->origin);
+    MeshShape mesh;
+    mesh.file = "terrain.obj";
+    description.shapes[i].kind = mesh;
+    description.shapes[i].transform = Matrix44d();
+  }
+  const std::filesystem::path path = folder / "launch.json";
+  std::ofstream file(path);
+  file << write_scene(description);
+  if (!file.flush()) throw Error(ErrorKind::failure, {path.string(), 0, {}}, "cannot be written");
+  return path;
+}
+
+/// From launch to file with the mesh, which both read as text.
+Figure launch_figure(const MeasureContext& context, const SceneDescription& description, const Scene& scene) {
+  context.progress("povray: launch to picture, " + scene.description.name);
+  const Povray povray(context, scene, PovrayPicture::shaded, 0, "launch");
+  const std::filesystem::path ours = write_scene_with_mesh_file(context.scratch, description, scene);
+  const auto our_run = [&] {
+    const ChildResult child = run_child({context.programs / "raytree", "render", ours, "--threads", "1", "-o",
+                                         context.scratch / "launch.png", "--quiet", "--progress", "none"},
+                                        context.scratch);
+    require_success(child, "raytree render");
+    return child.wall_seconds;
+  };
+  const PairedSpread pairs = measure_pairs([&] { return povray.run({"-A"}).wall_seconds; }, our_run, few_pairs());
+  return figure_of(
+      "POV-Ray's time from launch to PNG / ours, " + picture_text(scene, 1), pairs.ratio, BoundKind::at_least,
+      kLaunchRatio,
+      fmt::format("{:.2f} s against {:.2f} s; the mesh is text for both (OBJ for us)", pairs.a.median, pairs.b.median));
+}
+
+/// Share of the pixels, away from edges, where the two see something at another distance or only one of them sees
+/// anything. Distances come from POV-Ray as levels of 16 bits: one and a half of them are the tolerance.
+Figure distance_figure(const MeasureContext& context, Scene& scene, const std::string& name) {
+  context.progress("povray: distances, " + scene.description.name);
+  RenderSettings settings = scene.description.render;
+  settings.antialias = {Antialiasing::Method::none, 1};
+  const Film film = traced(scene, settings, {ChannelGroup::depth, ChannelGroup::object_id}).film;
+  const float* const depth = film.plane(ChannelGroup::depth, 0);
+  const std::uint32_t* const object = film.id_plane(ChannelGroup::object_id);
+  const int width = film.window().width, height = film.window().height;
+  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  float farthest = 0;
+  for (std::size_t i = 0; i < pixels; ++i)
+    if (object[i] != 0) farthest = std::max(farthest, depth[i]);
+  // Nearness 0 must mean that nothing was hit.
+  const double reach = 1.05 * farthest, tolerance = 1.5 * reach / kLargest16;
+
+  const Povray povray(context, scene, PovrayPicture::nearness, reach, name);
+  povray.run({"-A"});
+  const Picture nearness = povray.picture();
+
+  std::size_t compared = 0, hit_by_one = 0, elsewhere = 0;
+  double largest = 0;
+  for (int y = 1; y + 1 < height; ++y)
+    for (int x = 1; x + 1 < width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * width + x;
+      bool edge = false;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const std::size_t k = i + static_cast<std::size_t>(dy * width + dx);
+          // Within one object an edge is where the distance jumps by more than a slope would have it.
+          edge |= object[k] != object[i] || std::abs(depth[k] - depth[i]) > 0.02f * depth[i];
+        }
+      if (edge) continue;
+      ++compared;
+      const bool hit = object[i] != 0;
+      if (hit != (nearness[i] > 0)) {
+        ++hit_by_one;
+      } else if (hit) {
+        const double off = std::abs((1 - nearness[i]) * reach - depth[i]);
+        largest = std::max(largest, off);
+        elsewhere += off > tolerance;
+      }
+    }
+  const double share = 100 * static_cast<double>(hit_by_one + elsewhere) / static_cast<double>(compared);
+  Figure figure = figure_of("pixels away from edges where POV-Ray sees another distance, or only one of us a shape, " +
+                                picture_text(scene, 1),
+                            {share, share, share, 1}, BoundKind::at_most, 0,
+                            fmt::format("{} pixels compared; hit by one alone {}, at another distance {}; largest "
+                                        "difference {:.2g} of a tolerance of {:.2g} (a level and a half of 16 bits)",
+                                        compared, hit_by_one, elsewhere, largest, tolerance));
+  figure.unit = "%";
+  return figure;
+}
+
+}  // namespace
+
+std::vector<Figure> measure_povray(const MeasureContext& context) {
+  std::vector<Figure> figures;
+  for (const bool with_mesh : {false, true}) {
+    SceneDescription description = with_mesh ? reference_scene_with_mesh() : reference_scene();
+    Scene scene = prepared(description);
+    const std::string name = with_mesh ? "mesh" : "spheres";
+    measure_tracing(context, scene, name, figures);
+    figures.push_back(distance_figure(context, scene, name + "-distance"));
+    if (with_mesh) figures.push_back(launch_figure(context, description, scene));
+    // Converged pictures take 81 and 256 samples a pixel: a smaller one serves.
+    description.image = {640, 480};
+    Scene small = prepared(std::move(description));
+    figures.push_back(adaptive_figure(context, small, name + "-adaptive"));
+  }
+  return figures;
+}
+
+}  // namespace raytree::benchmarks
