@@ -78,17 +78,42 @@ std::string camera_name(const Scene& scene, const SceneFlags& flags) {
 }
 
 struct Totals {
-  std::uint64_t faces[3] = {0, 0, 0}, triangles = 0, spheres = 0;
+  std::uint64_t faces[3] = {0, 0, 0}, triangles = 0, spheres = 0;  ///< each once, however often it is used
+  std::uint64_t instanced_triangles = 0, instanced_spheres = 0;    ///< as often as they are used
 };
 
 Totals totals(const SceneSummary& summary) {
   Totals sum;
-  for (const ShapeSummary& shape : summary.shapes) {
-    for (int i = 0; i < 3; ++i) sum.faces[i] += shape.faces_by_size[i];
-    sum.triangles += shape.triangles;
-    sum.spheres += shape.spheres;
-  }
+  const auto add = [&](const std::vector<ShapeSummary>& shapes) {
+    for (const ShapeSummary& shape : shapes) {
+      for (int i = 0; i < 3; ++i) sum.faces[i] += shape.faces_by_size[i];
+      sum.triangles += shape.triangles;
+      sum.spheres += shape.spheres;
+      sum.instanced_triangles += shape.instanced_triangles;
+      sum.instanced_spheres += shape.instanced_spheres;
+    }
+  };
+  add(summary.shapes);
+  for (const GroupSummary& group : summary.groups) add(group.shapes);
   return sum;
+}
+
+Json json_of(const ShapeSummary& shape) {
+  return {{"id", shape.id},
+          {"name", shape.name},
+          {"kind", shape.kind},
+          {"material", shape.material},
+          {"faces",
+           {{"triangles", shape.faces_by_size[0]},
+            {"quads", shape.faces_by_size[1]},
+            {"larger", shape.faces_by_size[2]}}},
+          {"traced_triangles", shape.triangles},
+          {"spheres", shape.spheres},
+          {"instances", shape.instances},
+          {"first_extra_id", shape.first_extra_id},
+          {"instanced_triangles", shape.instanced_triangles},
+          {"instanced_spheres", shape.instanced_spheres},
+          {"bounds", json_of(shape.bounds)}};
 }
 
 std::string info_json(const Scene& scene, const InfoOptions& options) {
@@ -104,23 +129,21 @@ std::string info_json(const Scene& scene, const InfoOptions& options) {
   for (const CameraDescription& camera : description.cameras) json["cameras"].push_back(camera.name);
   json["bounds"] = json_of(summary.bounds);
   json["objects"] = Json::array();
-  for (const ShapeSummary& shape : summary.shapes)
-    json["objects"].push_back({{"id", shape.id},
-                               {"name", shape.name},
-                               {"kind", shape.kind},
-                               {"material", shape.material},
-                               {"faces",
-                                {{"triangles", shape.faces_by_size[0]},
-                                 {"quads", shape.faces_by_size[1]},
-                                 {"larger", shape.faces_by_size[2]}}},
-                               {"traced_triangles", shape.triangles},
-                               {"spheres", shape.spheres},
-                               {"bounds", json_of(shape.bounds)}});
+  for (const ShapeSummary& shape : summary.shapes) json["objects"].push_back(json_of(shape));
+  json["groups"] = Json::array();
+  for (const GroupSummary& group : summary.groups) {
+    Json shapes = Json::array();
+    for (const ShapeSummary& shape : group.shapes) shapes.push_back(json_of(shape));
+    json["groups"].push_back({{"name", group.name}, {"instances", group.instances}, {"shapes", std::move(shapes)}});
+  }
   const Totals sum = totals(summary);
   json["totals"] = {{"objects", summary.shapes.size()},
                     {"faces", {{"triangles", sum.faces[0]}, {"quads", sum.faces[1]}, {"larger", sum.faces[2]}}},
                     {"traced_triangles", sum.triangles},
-                    {"spheres", sum.spheres}};
+                    {"spheres", sum.spheres},
+                    {"instances", summary.instances},
+                    {"instanced_triangles", sum.instanced_triangles},
+                    {"instanced_spheres", sum.instanced_spheres}};
   json["materials_in_use"] = summary.materials_in_use;
   json["lights"] = Json::array();
   for (const LightDescription& light : description.lights)
@@ -184,6 +207,20 @@ std::string info_text(const Scene& scene, const InfoOptions& options) {
   text += fmt::format("faces      {} triangles, {} quads, {} larger; traced as {} triangles and {} spheres\n",
                       grouped(sum.faces[0]), grouped(sum.faces[1]), grouped(sum.faces[2]), grouped(sum.triangles),
                       grouped(sum.spheres));
+  if (!summary.groups.empty()) {
+    text += fmt::format("groups     {}\n", summary.groups.size());
+    rows = {{"name", "instances", "shapes", "traced", "spheres"}};
+    for (std::size_t i = 0; i < std::min(kObjectsShown, summary.groups.size()); ++i) {
+      const GroupSummary& group = summary.groups[i];
+      std::uint64_t triangles = 0, spheres = 0;
+      for (const ShapeSummary& shape : group.shapes) triangles += shape.triangles, spheres += shape.spheres;
+      rows.push_back({group.name, grouped(group.instances), grouped(group.shapes.size()), grouped(triangles),
+                      grouped(spheres)});
+    }
+    text += table(rows);
+    text += fmt::format("instances  {}, which stand for {} triangles and {} spheres\n", grouped(summary.instances),
+                        grouped(sum.instanced_triangles), grouped(sum.instanced_spheres));
+  }
   text += fmt::format("bounds     {}\n", text_of(summary.bounds));
   text += fmt::format("materials  {}\n", text_of(summary.materials_in_use));
   std::vector<std::string> lights;

@@ -67,9 +67,15 @@ bool runs_alike(const Ray& ray) {
   return least >= kAlikeCosine;
 }
 
-template <int Width>
+/// Embree's id of the instance that was hit, as an index into ShapeSet::instances.
+inline InstanceId instance_of(unsigned int embree_id, GeometryId first_instance) {
+  return embree_id == RTC_INVALID_GEOMETRY_ID ? kNoInstance : embree_id - first_instance;
+}
+
+/// `Instanced`: the scene has instances, the first of them of Embree's id `first_instance`.
+template <int Width, bool Instanced>
 void intersect_packets(RTCScene scene, const RayBatch& rays, Coherence coherence, const float* max_distance,
-                       HitBatch& hits) noexcept {
+                       GeometryId first_instance, HitBatch& hits) noexcept {
   Query query(coherence == Coherence::coherent);
   alignas(64) int valid[Width];
   typename PacketTypes<Width>::RayHit packet;
@@ -84,6 +90,8 @@ void intersect_packets(RTCScene scene, const RayBatch& rays, Coherence coherence
     copy_lanes<Width>(hits.u + first, packet.hit.u);
     copy_lanes<Width>(hits.v + first, packet.hit.v);
     copy_lanes<Width>(hits.distance + first, packet.ray.tfar);
+    if constexpr (Instanced)
+      for (int i = 0; i < Width; ++i) hits.instance[first + i] = instance_of(packet.hit.instID[0][i], first_instance);
   }
 }
 
@@ -107,7 +115,66 @@ RTCBuildQuality embree_quality(EmbreeOptions::Quality quality) {
   return quality == EmbreeOptions::Quality::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
 }
 
+/// A scene of these shapes, not committed. Embree writes to none of the buffers that it shares.
+embree::SceneHandle scene_of(RTCDevice device, const BoundedShapes& shapes, const EmbreeOptions& options) {
+  embree::SceneHandle handle(rtcNewScene(device));
+  RTCScene scene = handle.get();
+  int flags = RTC_SCENE_FLAG_NONE;
+  if (options.robust) flags |= RTC_SCENE_FLAG_ROBUST;
+  if (options.compact) flags |= RTC_SCENE_FLAG_COMPACT;
+  rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(flags));
+  rtcSetSceneBuildQuality(scene, embree_quality(options.quality));
+
+  const auto attach = [&](RTCGeometryType type, GeometryId id, auto&& set_buffers) {
+    embree::Geometry geometry(rtcNewGeometry(device, type));
+    if (!geometry) return;
+    rtcSetGeometryMask(geometry.get(), 0xffffffffu);  // Embree 4's default meets no ray mask
+    rtcSetGeometryBuildQuality(geometry.get(), embree_quality(options.quality));
+    set_buffers(geometry.get());
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(scene, geometry.get(), id);
+  };
+  const auto share = [](RTCGeometry geometry, RTCBufferType type, RTCFormat format, const auto& array,
+                        std::size_t stride, std::size_t count) {
+    rtcSetSharedGeometryBuffer(geometry, type, 0, format, array.data(), 0, stride, count);
+  };
+
+  if (const SphereArray& spheres = shapes.spheres; !spheres.center_radius.empty())
+    attach(RTC_GEOMETRY_TYPE_SPHERE_POINT, kSphereGeometry, [&](RTCGeometry geometry) {
+      share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres.center_radius, 16,
+            spheres.center_radius.size());
+    });
+  if (const DiscArray& discs = shapes.discs; !discs.center_radius.empty())
+    attach(RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT, kDiscGeometry, [&](RTCGeometry geometry) {
+      share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, discs.center_radius, 16, discs.center_radius.size());
+      share(geometry, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, discs.normal, sizeof(Vec3f), discs.normal.size());
+    });
+  for (std::size_t i = 0; i < shapes.meshes.size(); ++i) {
+    const TriangleMesh& mesh = shapes.meshes[i].mesh;
+    if (mesh.corners.empty()) continue;
+    attach(RTC_GEOMETRY_TYPE_TRIANGLE, kFirstMeshGeometry + static_cast<GeometryId>(i), [&](RTCGeometry geometry) {
+      share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions, sizeof(Vec3f), mesh.positions.size());
+      share(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.corners, 12, mesh.triangle_count());
+    });
+  }
+  return handle;
+}
+
+void commit(RTCScene scene, const std::atomic<bool>* stop) {
+  if (stop != nullptr)
+    rtcSetSceneProgressMonitorFunction(
+        scene, [](void* flag, double) { return !static_cast<const std::atomic<bool>*>(flag)->load(); },
+        const_cast<std::atomic<bool>*>(stop));
+  rtcCommitScene(scene);
+}
+
 }  // namespace
+
+void EmbreeIntersector::throw_if_failed(State& state, const std::atomic<bool>* stop) {
+  if (stop != nullptr && stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
+  std::lock_guard lock(state.error_mutex);
+  if (!state.error.empty()) throw Error(ErrorKind::failure, {}, "Embree: " + state.error);
+}
 
 EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions& options)
     : state_(std::make_unique<State>()) {
@@ -139,76 +206,57 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
       &state);
   state.wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
 
-  state.scene.reset(rtcNewScene(device));
-  RTCScene scene = state.scene.get();
-  int flags = RTC_SCENE_FLAG_NONE;
-  if (options.robust) flags |= RTC_SCENE_FLAG_ROBUST;
-  if (options.compact) flags |= RTC_SCENE_FLAG_COMPACT;
-  rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(flags));
-  rtcSetSceneBuildQuality(scene, embree_quality(options.quality));
-
-  const auto attach = [&](RTCGeometryType type, GeometryId id, auto&& set_buffers) {
-    embree::Geometry geometry(rtcNewGeometry(device, type));
-    if (!geometry) return;
-    rtcSetGeometryMask(geometry.get(), 0xffffffffu);  // Embree 4's default meets no ray mask
-    rtcSetGeometryBuildQuality(geometry.get(), embree_quality(options.quality));
-    set_buffers(geometry.get());
-    rtcCommitGeometry(geometry.get());
-    rtcAttachGeometryByID(scene, geometry.get(), id);
-  };
-  // Embree writes to none of the buffers that it shares.
-  const auto share = [](RTCGeometry geometry, RTCBufferType type, RTCFormat format, const auto& array,
-                        std::size_t stride, std::size_t count) {
-    rtcSetSharedGeometryBuffer(geometry, type, 0, format, array.data(), 0, stride, count);
-  };
-
-  if (const SphereArray& spheres = shapes.spheres; !spheres.center_radius.empty())
-    attach(RTC_GEOMETRY_TYPE_SPHERE_POINT, kSphereGeometry, [&](RTCGeometry geometry) {
-      share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres.center_radius, 16,
-            spheres.center_radius.size());
-    });
-  if (const DiscArray& discs = shapes.discs; !discs.center_radius.empty())
-    attach(RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT, kDiscGeometry, [&](RTCGeometry geometry) {
-      share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, discs.center_radius, 16, discs.center_radius.size());
-      share(geometry, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, discs.normal, sizeof(Vec3f), discs.normal.size());
-    });
-  for (std::size_t i = 0; i < shapes.meshes.size(); ++i) {
-    const TriangleMesh& mesh = shapes.meshes[i].mesh;
-    if (mesh.corners.empty()) continue;
-    attach(RTC_GEOMETRY_TYPE_TRIANGLE, kFirstMeshGeometry + static_cast<GeometryId>(i), [&](RTCGeometry geometry) {
-      share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions, sizeof(Vec3f), mesh.positions.size());
-      share(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.corners, 12, mesh.triangle_count());
-    });
+  // Instances refer to groups that are built; what nothing uses is not.
+  std::vector<bool> used(shapes.groups.size(), false);
+  for (const Instance& instance : shapes.instances) used[instance.group] = true;
+  state.groups.resize(shapes.groups.size());
+  for (std::size_t i = 0; i < shapes.groups.size(); ++i) {
+    if (!used[i]) continue;
+    state.groups[i] = scene_of(device, shapes.groups[i], options);
+    commit(state.groups[i].get(), options.stop);
+    throw_if_failed(state, options.stop);
   }
-  if (options.stop != nullptr)
-    rtcSetSceneProgressMonitorFunction(
-        scene, [](void* stop, double) { return !static_cast<const std::atomic<bool>*>(stop)->load(); },
-        const_cast<std::atomic<bool>*>(options.stop));
-  rtcCommitScene(scene);
 
-  if (options.stop != nullptr && options.stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
-  std::lock_guard lock(state.error_mutex);
-  if (!state.error.empty()) throw Error(ErrorKind::failure, {}, "Embree: " + state.error);
+  state.scene = scene_of(device, shapes, options);
+  state.instanced = !shapes.instances.empty();
+  state.first_instance = kFirstMeshGeometry + static_cast<GeometryId>(shapes.meshes.size());
+  for (std::size_t i = 0; i < shapes.instances.size(); ++i) {
+    const Instance& instance = shapes.instances[i];
+    embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
+    if (!geometry) break;
+    rtcSetGeometryMask(geometry.get(), 0xffffffffu);
+    rtcSetGeometryInstancedScene(geometry.get(), state.groups[instance.group].get());
+    rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, instance.to_scene);
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(state.scene.get(), geometry.get(), state.first_instance + static_cast<GeometryId>(i));
+  }
+  commit(state.scene.get(), options.stop);
+  throw_if_failed(state, options.stop);
 }
 
 EmbreeIntersector::~EmbreeIntersector() = default;
+
+void EmbreeIntersector::nearest_bounded(const RayBatch& rays, Coherence coherence, const float* max_distance,
+                                        HitBatch& hits) const noexcept {
+  if (state_->instanced)
+    hits.begin_instances();
+  else
+    hits.clear_instances();
+  const auto run = state_->wide ? (state_->instanced ? intersect_packets<8, true> : intersect_packets<8, false>)
+                                : (state_->instanced ? intersect_packets<4, true> : intersect_packets<4, false>);
+  run(state_->scene.get(), rays, coherence, max_distance, state_->first_instance, hits);
+}
 
 void EmbreeIntersector::intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept {
   // Planes first: Embree then looks no further than they are.
   const std::vector<Plane>& planes = state_->shapes->planes;
   if (planes.empty()) {
-    if (state_->wide)
-      intersect_packets<8>(state_->scene.get(), rays, coherence, rays.max_distance, hits);
-    else
-      intersect_packets<4>(state_->scene.get(), rays, coherence, rays.max_distance, hits);
+    nearest_bounded(rays, coherence, rays.max_distance, hits);
     return;
   }
   thread_local PlaneHits plane_hits;
   intersect_planes(planes, rays, plane_hits);
-  if (state_->wide)
-    intersect_packets<8>(state_->scene.get(), rays, coherence, plane_hits.distance.data(), hits);
-  else
-    intersect_packets<4>(state_->scene.get(), rays, coherence, plane_hits.distance.data(), hits);
+  nearest_bounded(rays, coherence, plane_hits.distance.data(), hits);
   for (std::size_t i = 0; i < rays.size; ++i)
     if (hits.geometry[i] == kNoGeometry && plane_hits.plane[i] != kNoPlane)
       hits.set(i, {kPlaneGeometry, plane_hits.plane[i], 0, 0, plane_hits.distance[i]});
@@ -239,7 +287,8 @@ Hit EmbreeIntersector::intersect_one(const Vec3f& origin, const Vec3f& direction
   RTCRayHit ray = embree::single_ray_hit(origin, direction, nearest.distance);
   query.intersect(state_->scene.get(), ray);
   if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID)
-    nearest = {ray.hit.geomID, ray.hit.primID, ray.hit.u, ray.hit.v, ray.ray.tfar};
+    nearest = {ray.hit.geomID, ray.hit.primID,   ray.hit.u,
+               ray.hit.v,      ray.ray.tfar,     instance_of(ray.hit.instID[0], state_->first_instance)};
   return nearest;
 }
 

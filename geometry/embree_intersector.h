@@ -42,6 +42,10 @@ class EmbreeIntersector final : public RayIntersector {
  private:
   friend class BareReplay;
   struct State;
+  static void throw_if_failed(State& state, const std::atomic<bool>* stop);
+  void nearest_bounded(const RayBatch& rays, Coherence coherence, const float* max_distance,
+                       HitBatch& hits) const noexcept;
+
   std::unique_ptr<State> state_;
 };
 

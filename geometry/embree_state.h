@@ -4,6 +4,7 @@
 #include <atomic>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "geometry/embree_api.h"
 #include "geometry/embree_intersector.h"
@@ -17,7 +18,11 @@ struct EmbreeIntersector::State {
   std::mutex error_mutex;
   std::string error;  ///< first one Embree reported
   embree::Device device;
+  /// One a group that has shapes and is used; before `scene`, so that they outlive it.
+  std::vector<embree::SceneHandle> groups;
   embree::SceneHandle scene;
+  GeometryId first_instance = 0;  ///< Embree's id of ShapeSet::instances[0]
+  bool instanced = false;
   bool wide = true;  ///< 8-wide packets; else 4
 };
 

@@ -1,5 +1,6 @@
 #include "geometry/ray_batch.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace raytree {
@@ -30,7 +31,7 @@ RayBatch::RayBatch(std::size_t capacity)
 }
 
 HitBatch::HitBatch(std::size_t capacity)
-    : capacity_(capacity), storage_(detail::batch_storage(5, padded_capacity(capacity))) {
+    : capacity_(capacity), storage_(detail::batch_storage(6, padded_capacity(capacity))) {
   const std::size_t padded = padded_capacity(capacity);
   auto* block = reinterpret_cast<std::uint32_t*>(storage_.get());
   geometry = block;
@@ -38,6 +39,8 @@ HitBatch::HitBatch(std::size_t capacity)
   u = reinterpret_cast<float*>(block + 2 * padded);
   v = reinterpret_cast<float*>(block + 3 * padded);
   distance = reinterpret_cast<float*>(block + 4 * padded);
+  instance = block + 5 * padded;
+  std::fill_n(instance, padded, kNoInstance);
 }
 
 }  // namespace raytree

@@ -1,6 +1,7 @@
 // Batches of rays and of hits, structure of arrays: what flows through the seam (ray_intersector.h).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -57,11 +58,16 @@ inline constexpr GeometryId kPlaneGeometry = 2;
 inline constexpr GeometryId kFirstMeshGeometry = 3;
 inline constexpr GeometryId kNoGeometry = std::numeric_limits<GeometryId>::max();
 
+/// Which use of a group a hit lies on: an index into ShapeSet::instances. Geometry and primitive are then the group's.
+using InstanceId = std::uint32_t;
+inline constexpr InstanceId kNoInstance = std::numeric_limits<InstanceId>::max();
+
 struct Hit {
   GeometryId geometry = kNoGeometry;
   std::uint32_t primitive = 0;  ///< triangle, sphere, disc or plane of the geometry
   float u = 0, v = 0;           ///< triangles: weights of corner 1 and corner 2; slightly outside [0, 1] at edges
   float distance = 0;
+  InstanceId instance = kNoInstance;
 };
 
 /// Nearest hits, one per ray of the batch asked about. A miss has geometry kNoGeometry.
@@ -75,14 +81,27 @@ class HitBatch {
   std::uint32_t* primitive;
   float *u, *v;
   float* distance;
+  InstanceId* instance;  ///< kNoInstance where a hit lies on no instance
 
-  Hit operator[](std::size_t i) const { return {geometry[i], primitive[i], u[i], v[i], distance[i]}; }
+  /// Tracers of scenes with instances write every ray's and say so; others leave them at kNoInstance, which costs
+  /// nothing unless the batch came from a scene with instances.
+  void begin_instances() { has_instances_ = true; }
+  void clear_instances() {
+    if (has_instances_) std::fill_n(instance, capacity_, kNoInstance);
+    has_instances_ = false;
+  }
+
+  Hit operator[](std::size_t i) const {
+    return {geometry[i], primitive[i], u[i], v[i], distance[i], instance[i]};
+  }
   void set(std::size_t i, const Hit& hit) {
     geometry[i] = hit.geometry, primitive[i] = hit.primitive, u[i] = hit.u, v[i] = hit.v, distance[i] = hit.distance;
+    instance[i] = hit.instance;
   }
 
  private:
   std::size_t capacity_;
+  bool has_instances_ = false;
   std::unique_ptr<std::byte[], detail::AlignedDelete> storage_;
 };
 

@@ -2,16 +2,29 @@
 
 namespace raytree {
 
-std::size_t memory_bytes(const ShapeSet& shapes) {
-  const auto bytes = [](const auto& array) { return array.size() * sizeof(array[0]); };
+namespace {
+
+template <class Array>
+std::size_t bytes(const Array& array) {
+  return array.size() * sizeof(array[0]);
+}
+
+std::size_t bounded_bytes(const BoundedShapes& shapes) {
   std::size_t sum = bytes(shapes.spheres.center_radius) + bytes(shapes.spheres.shape) +
-                    bytes(shapes.discs.center_radius) + bytes(shapes.discs.normal) + bytes(shapes.discs.shape) +
-                    bytes(shapes.planes);
+                    bytes(shapes.discs.center_radius) + bytes(shapes.discs.normal) + bytes(shapes.discs.shape);
   for (const MeshEntry& entry : shapes.meshes) {
     const TriangleMesh& mesh = entry.mesh;
     sum += bytes(mesh.positions) + bytes(mesh.corners) + bytes(mesh.normals) + bytes(mesh.normal_corners) +
            bytes(mesh.texture_coordinates) + bytes(mesh.texture_corners) + bytes(mesh.triangle_faces);
   }
+  return sum;
+}
+
+}  // namespace
+
+std::size_t memory_bytes(const ShapeSet& shapes) {
+  std::size_t sum = bounded_bytes(shapes) + bytes(shapes.planes) + bytes(shapes.instances);
+  for (const BoundedShapes& group : shapes.groups) sum += bounded_bytes(group);
   return sum;
 }
 

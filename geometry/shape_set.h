@@ -1,5 +1,6 @@
 // The shapes of a scene in tracing form, all in scene space: world space less `origin`, so that a scene far from the
-// world's origin loses nothing to float. Spheres, discs and planes stand in one array each.
+// world's origin loses nothing to float. Spheres, discs and planes stand in one array each. Groups hold shapes in a space
+// of their own and are used, as often as one likes, through instances.
 #pragma once
 
 #include <Imath/ImathVec.h>
@@ -14,7 +15,8 @@
 
 namespace raytree {
 
-/// Index into the scene's list of shapes: the unit that has a name, a material and an object id.
+/// Index into the scene's list of shapes, those of groups behind those of the scene: the unit that has a name and a
+/// material.
 using ShapeId = std::uint32_t;
 
 struct SphereArray {
@@ -39,19 +41,43 @@ struct MeshEntry {
   ShapeId shape = 0;
 };
 
-struct ShapeSet {
-  Vec3d origin{0, 0, 0};          ///< world position of scene space's origin
+/// What lies within bounds.
+struct BoundedShapes {
   SphereArray spheres;            ///< kSphereGeometry
   DiscArray discs;                ///< kDiscGeometry
-  std::vector<Plane> planes;      ///< kPlaneGeometry
   std::vector<MeshEntry> meshes;  ///< kFirstMeshGeometry + index
 
-  /// Shape that a hit lies on.
-  ShapeId shape_of(GeometryId geometry, std::uint32_t primitive) const {
+  bool empty() const { return spheres.shape.empty() && discs.shape.empty() && meshes.empty(); }
+
+  /// Shape that a hit on anything but a plane lies on.
+  ShapeId bounded_shape_of(GeometryId geometry, std::uint32_t primitive) const {
     if (geometry >= kFirstMeshGeometry) return meshes[geometry - kFirstMeshGeometry].shape;
-    if (geometry == kSphereGeometry) return spheres.shape[primitive];
-    if (geometry == kDiscGeometry) return discs.shape[primitive];
-    return planes[primitive].shape;
+    return geometry == kSphereGeometry ? spheres.shape[primitive] : discs.shape[primitive];
+  }
+};
+
+/// One use of a group. As single precision has it, since that is what a tracer sees; no inverse is kept, so that a
+/// million uses take 60 MB.
+struct Instance {
+  float to_scene[4][3];      ///< group to scene space, row vectors: x, y and z axis, origin
+  std::uint32_t group = 0;   ///< of ShapeSet::groups
+  ShapeId shape = 0;         ///< the scene's shape that uses the group, directly or through other groups
+  std::uint32_t object = 0;  ///< index among the scene's objects: shapes, and uses of groups beyond a shape's first one
+
+  Vec3f axis(int i) const { return {to_scene[i][0], to_scene[i][1], to_scene[i][2]}; }
+  Vec3f origin() const { return axis(3); }
+};
+
+struct ShapeSet : BoundedShapes {
+  Vec3d origin{0, 0, 0};              ///< world position of scene space's origin
+  std::vector<Plane> planes;          ///< kPlaneGeometry
+  std::vector<BoundedShapes> groups;  ///< each in a space of its own; none holds another: nesting is resolved
+  Buffer<Instance> instances;         ///< those of one shape stand together
+
+  /// Shape that a hit lies on.
+  ShapeId shape_of(GeometryId geometry, std::uint32_t primitive, InstanceId instance = kNoInstance) const {
+    if (instance != kNoInstance) return groups[instances[instance].group].bounded_shape_of(geometry, primitive);
+    return geometry == kPlaneGeometry ? planes[primitive].shape : bounded_shape_of(geometry, primitive);
   }
 };
 

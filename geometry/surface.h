@@ -60,12 +60,8 @@ inline float clearance(const Vec3f& normal, const Vec3f& largest) {
           kLeastError * std::max(largest.x, std::max(largest.y, largest.z)));
 }
 
-inline void sphere_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
-                           SurfacePoint& point) {
-  const Imath::V4f& sphere = shapes.spheres.center_radius[hit.primitive];
-  const Vec3d center(sphere.x, sphere.y, sphere.z);
-  const double radius = sphere.w;
-
+inline void sphere_surface(const Vec3d& center, double radius, const Vec3f& origin, const Vec3f& direction,
+                           const Hit& hit, SurfacePoint& point) {
   // The intersector says which sphere and which of its two sides; where exactly is solved again in double, by way of
   // the ray's closest point to the center, which keeps its digits for far and small spheres.
   const Vec3d o(origin), d(direction);
@@ -104,7 +100,13 @@ inline void flat_surface(const Vec3d& through, const Vec3d& normal, const Vec3f&
   point.distance = static_cast<float>(distance);
 }
 
-inline void disc_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
+inline void sphere_surface(const BoundedShapes& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
+                           SurfacePoint& point) {
+  const Imath::V4f& sphere = shapes.spheres.center_radius[hit.primitive];
+  sphere_surface(Vec3d(sphere.x, sphere.y, sphere.z), double(sphere.w), origin, direction, hit, point);
+}
+
+inline void disc_surface(const BoundedShapes& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
                          SurfacePoint& point) {
   const Imath::V4f& disc = shapes.discs.center_radius[hit.primitive];
   flat_surface(Vec3d(disc.x, disc.y, disc.z), Vec3d(shapes.discs.normal[hit.primitive]), origin, direction, hit, point);
@@ -168,8 +170,12 @@ inline void triangle_surface(const TriangleMesh& mesh, const Hit& hit, bool text
 
 }  // namespace detail
 
-/// The surface that `hit` (of a ray from `origin` along unit `direction`) lies on. `texture`: whether texture
-/// coordinates are wanted.
+/// The same for a hit on an instance.
+void find_instance_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
+                           bool texture, SurfacePoint& point);
+
+/// The surface that `hit` (of a ray from `origin` along unit `direction`), not on an instance, lies on. `texture`:
+/// whether texture coordinates are wanted.
 inline void find_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
                          bool texture, SurfacePoint& point) {
   if (hit.geometry >= kFirstMeshGeometry)
@@ -185,7 +191,10 @@ inline void find_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3
 inline SurfacePoint surface_at(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
                                bool texture) {
   SurfacePoint point;
-  find_surface(shapes, origin, direction, hit, texture, point);
+  if (hit.instance != kNoInstance)
+    find_instance_surface(shapes, origin, direction, hit, texture, point);
+  else
+    find_surface(shapes, origin, direction, hit, texture, point);
   return point;
 }
 

@@ -20,6 +20,7 @@ struct Features {
   bool truncation_channel = kOptionalFeatures;
   bool uneven_lights = kOptionalFeatures;  ///< falloff and cones
   bool halfway_highlights = kOptionalFeatures;
+  bool instances = kOptionalFeatures;
 };
 inline constexpr Features kFeatures;
 

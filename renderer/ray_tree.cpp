@@ -78,6 +78,7 @@ struct SampleTracer::State {
     reflected_rays.reserve(kBatchSize);
     refracted_rays.reserve(kBatchSize);
     for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
+    instanced = !scene.shapes->instances.empty();
     results.radiance.resize(kBatchSize);
     results.truncation.resize(records.truncation ? kBatchSize : 0);
     results.ray_counts.resize(records.ray_counts ? kBatchSize : 0);
@@ -95,7 +96,7 @@ struct SampleTracer::State {
   void spawn();
   void cut(std::uint32_t sample, const Rgb& bound);
   void add_children(RayKind kind, std::vector<PendingRay>& children);
-  void record_first_hit(const BatchPoint& point, ShapeId shape);
+  void record_first_hit(const BatchPoint& point, std::uint32_t object, std::uint32_t material);
 
   const Scene& scene;
   const RenderSettings& settings;
@@ -122,6 +123,7 @@ struct SampleTracer::State {
   std::vector<PendingRay> reflected_rays, refracted_rays;
 
   bool wants_texture = false;
+  bool instanced = false;  ///< the scene has instances
 };
 
 void SampleTracer::State::begin_sample(std::size_t i, const Vec2f& position) {
@@ -204,10 +206,20 @@ void SampleTracer::State::collect_hits(bool eye) {
     const std::size_t i = hit_rays[p];
     const PendingRay& ray = contexts[i];
     const Hit hit = hits[i];
-    const ShapeId shape = shapes.shape_of(hit.geometry, hit.primitive);
-    const Material& material = scene.materials[scene.shape_materials[shape]];
     BatchPoint& point = points[p];
-    find_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
+    std::uint32_t object, material_index;
+    if (kFeatures.instances && instanced && hit.instance != kNoInstance) {
+      const Instance& instance = shapes.instances[hit.instance];
+      object = instance.object;
+      material_index =
+          scene.instance_material(instance, shapes.shape_of(hit.geometry, hit.primitive, hit.instance));
+      find_instance_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
+    } else {
+      object = shapes.shape_of(hit.geometry, hit.primitive);
+      material_index = scene.shape_materials[object];
+      find_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
+    }
+    const Material& material = scene.materials[material_index];
     complete_shading_point(point.shading, ray.direction, material);
     point.weight = ray.weight;
     point.allowance = ray.allowance;
@@ -219,18 +231,22 @@ void SampleTracer::State::collect_hits(bool eye) {
     results.radiance[ray.sample] +=
         point.weight * scene.ambient *
         (material.ambient_as_diffuse ? point.shading.diffuse : material.ambient.at(point.shading.surface));
-    if (kFeatures.first_hit_channels && eye && records.first_hits) record_first_hit(point, shape);
+    if (kFeatures.first_hit_channels && eye && records.first_hits) record_first_hit(point, object, material_index);
   }
 }
 
 /// The vertices of the batch's triangles lie anywhere in memory: all are asked for before the first is used.
 void SampleTracer::State::prefetch_triangles(const ShapeSet& shapes) const {
-  if (shapes.meshes.empty()) return;
+  const bool any_instances = kFeatures.instances && instanced;
+  if (shapes.meshes.empty() && !any_instances) return;
   const auto for_each_triangle = [&](auto&& function) {
     for (std::size_t p = 0; p < point_count; ++p) {
       const std::size_t i = hit_rays[p];
-      if (hits.geometry[i] >= kFirstMeshGeometry)
-        function(shapes.meshes[hits.geometry[i] - kFirstMeshGeometry].mesh, std::size_t(hits.primitive[i]) * 3);
+      if (hits.geometry[i] < kFirstMeshGeometry) continue;
+      const BoundedShapes& list = any_instances && hits.instance[i] != kNoInstance
+                                      ? shapes.groups[shapes.instances[hits.instance[i]].group]
+                                      : shapes;
+      function(list.meshes[hits.geometry[i] - kFirstMeshGeometry].mesh, std::size_t(hits.primitive[i]) * 3);
     }
   };
   for_each_triangle([](const TriangleMesh& mesh, std::size_t corner) { __builtin_prefetch(&mesh.corners[corner]); });
@@ -322,10 +338,10 @@ void SampleTracer::State::cut(std::uint32_t sample, const Rgb& bound) {
   ++statistics.branches_cut;
 }
 
-void SampleTracer::State::record_first_hit(const BatchPoint& point, ShapeId shape) {
+void SampleTracer::State::record_first_hit(const BatchPoint& point, std::uint32_t object, std::uint32_t material) {
   const SurfacePoint& surface = point.shading.surface;
-  results.first_hits[point.sample] = {surface.distance, surface.shading_normal, point.shading.diffuse, shape + 1,
-                                      scene.shape_materials[shape] + 1};
+  results.first_hits[point.sample] = {surface.distance, surface.shading_normal, point.shading.diffuse, object + 1,
+                                      material + 1};
 }
 
 SampleTracer::SampleTracer(const Scene& scene, const SampleRecords& records, const std::atomic<bool>* stop)

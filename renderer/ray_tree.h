@@ -25,7 +25,7 @@ struct FirstHit {
   float distance = 0;          ///< along the eye ray, scene units
   Vec3f normal{0, 0, 0};       ///< shading normal, unit
   Rgb albedo;                  ///< k_d
-  std::uint32_t object = 0;    ///< shape index + 1; 0: nothing was hit
+  std::uint32_t object = 0;    ///< shape's or instance's index + 1; 0: nothing was hit
   std::uint32_t material = 0;  ///< material index + 1
 };
 

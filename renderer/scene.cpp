@@ -9,6 +9,7 @@
 
 #include "geometry/embree_intersector.h"
 #include "geometry/open_edges.h"
+#include "renderer/groups.h"
 #include "renderer/scene_fields.h"
 #include "renderer/shape_assembly.h"
 
@@ -37,20 +38,28 @@ void resolve_materials(const SceneDescription& scene, const Vec3d& origin, Scene
   };
   for (const MaterialDescription& material : scene.materials) make(material);
   const auto fallback = static_cast<std::uint32_t>(scene.materials.size());
-  for (const ShapeDescription& shape : scene.shapes) {
+  const auto resolve = [&](const ShapeDescription& shape) {
+    if (shape.material.empty() && !group_used_by(shape).empty()) {
+      result.shape_materials.push_back(kOwnMaterials);
+      return;
+    }
     const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
                                     [&](const MaterialDescription& m) { return m.name == shape.material; });
     if (found == scene.materials.end() && !shape.material.empty())
       throw Error(ErrorKind::bad_input, shape.where, "no material \"" + shape.material + "\"");
     result.shape_materials.push_back(static_cast<std::uint32_t>(found - scene.materials.begin()));
     if (result.shape_materials.back() == fallback && result.materials.size() == fallback) make(MaterialDescription());
-  }
+  };
+  for (const ShapeDescription& shape : scene.shapes) resolve(shape);
+  for (const GroupDescription& group : scene.groups)
+    for (const ShapeDescription& shape : group.shapes) resolve(shape);
 }
 
 std::vector<std::string> features_in_use(const Scene& scene) {
   std::set<std::string> features;
   const RenderSettings& render = scene.description.render;
   for (const std::uint32_t index : scene.shape_materials) {
+    if (index == kOwnMaterials) continue;
     const Material& material = scene.materials[index];
     if (material.has_reflection) features.insert("reflection");
     if (material.has_transmission) features.insert("refraction");
@@ -72,12 +81,16 @@ std::vector<std::string> features_in_use(const Scene& scene) {
   if (render.antialias.method == Antialiasing::Method::whitted) features.insert("antialiasing (whitted)");
   if (scene.background.varies) features.insert("gradient background");
   const ShapeSet& shapes = *scene.shapes;
-  if (std::any_of(shapes.meshes.begin(), shapes.meshes.end(),
-                  [](const MeshEntry& m) { return !m.mesh.normals.empty(); }))
-    features.insert("smooth normals");
-  if (!shapes.meshes.empty()) features.insert("triangle BVH");
-  if (!shapes.spheres.shape.empty()) features.insert("sphere BVH");
-  if (!shapes.discs.shape.empty()) features.insert("disc BVH");
+  const auto add_features_of = [&](const BoundedShapes& list) {
+    if (std::any_of(list.meshes.begin(), list.meshes.end(), [](const MeshEntry& m) { return !m.mesh.normals.empty(); }))
+      features.insert("smooth normals");
+    if (!list.meshes.empty()) features.insert("triangle BVH");
+    if (!list.spheres.shape.empty()) features.insert("sphere BVH");
+    if (!list.discs.shape.empty()) features.insert("disc BVH");
+  };
+  add_features_of(shapes);
+  for (const BoundedShapes& group : shapes.groups) add_features_of(group);
+  if (!shapes.instances.empty()) features.insert("instances");
   if (!shapes.planes.empty()) features.insert("planes");
   if (shapes.origin != Vec3d(0, 0, 0)) features.insert("recentering");
   return {features.begin(), features.end()};
@@ -125,30 +138,53 @@ void check_light(const LightDescription& light, const SourceLocation& where) {
   }
 }
 
+/// The shapes of a description in the order of their ids: the scene's, then those of its groups.
+std::vector<const ShapeDescription*> all_shapes(const SceneDescription& scene) {
+  std::vector<const ShapeDescription*> shapes;
+  for (const ShapeDescription& shape : scene.shapes) shapes.push_back(&shape);
+  for (const GroupDescription& group : scene.groups)
+    for (const ShapeDescription& shape : group.shapes) shapes.push_back(&shape);
+  return shapes;
+}
+
 void warn_of_open_glass(const Scene& scene, Warnings& warnings) {
-  for (const MeshEntry& entry : scene.shapes->meshes) {
-    if (!scene.materials[scene.shape_materials[entry.shape]].has_transmission) continue;
-    if (const std::int64_t open = count_open_edges(entry.mesh); open > 0)
-      warnings.push_back({scene.description.shapes[entry.shape].where,
-                          "a refractive mesh that is not closed has no inside: open edges", open});
-  }
+  const std::vector<const ShapeDescription*> shapes = all_shapes(scene.description);
+  const auto check = [&](const BoundedShapes& list) {
+    for (const MeshEntry& entry : list.meshes) {
+      if (!scene.materials[scene.shape_materials[entry.shape]].has_transmission) continue;
+      if (const std::int64_t open = count_open_edges(entry.mesh); open > 0)
+        warnings.push_back(
+            {shapes[entry.shape]->where, "a refractive mesh that is not closed has no inside: open edges", open});
+    }
+  };
+  check(*scene.shapes);
+  for (const BoundedShapes& group : scene.shapes->groups) check(group);
 }
 
 /// Bytes a triangle or sphere takes in the intersector, measured (docs/architecture.md): an estimate for `info`.
-constexpr std::uint64_t kBytesPerTriangle = 62, kBytesPerSphere = 60;
+constexpr std::uint64_t kBytesPerTriangle = 62, kBytesPerSphere = 60, kBytesPerInstance = 400;
 
 std::uint64_t estimated_intersector_bytes(const SceneSummary& summary) {
-  std::uint64_t bytes = 0;
-  for (const ShapeSummary& shape : summary.shapes)
-    bytes += kBytesPerTriangle * shape.triangles + kBytesPerSphere * shape.spheres;
+  std::uint64_t bytes = kBytesPerInstance * summary.instances;
+  const auto add = [&](const std::vector<ShapeSummary>& shapes) {
+    for (const ShapeSummary& shape : shapes)
+      bytes += kBytesPerTriangle * shape.triangles + kBytesPerSphere * shape.spheres;
+  };
+  add(summary.shapes);
+  for (const GroupSummary& group : summary.groups) add(group.shapes);
   return bytes;
 }
 
 std::string building_text(const SceneSummary& summary) {
   std::uint64_t triangles = 0, spheres = 0;
-  for (const ShapeSummary& shape : summary.shapes) triangles += shape.triangles, spheres += shape.spheres;
+  const auto add = [&](const std::vector<ShapeSummary>& shapes) {
+    for (const ShapeSummary& shape : shapes) triangles += shape.triangles, spheres += shape.spheres;
+  };
+  add(summary.shapes);
+  for (const GroupSummary& group : summary.groups) add(group.shapes);
   std::string text = "building over " + std::to_string(triangles) + " triangles";
   if (spheres > 0) text += ", " + std::to_string(spheres) + " spheres";
+  if (summary.instances > 0) text += ", " + std::to_string(summary.instances) + " instances";
   return text;
 }
 
@@ -186,10 +222,18 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
         SmallObjects(*scene.shapes, scene.camera, scene.description.image.width, scene.description.image.height);
 
   std::set<std::string> used;
-  for (std::size_t i = 0; i < scene.shape_materials.size(); ++i) {
-    const std::string& name = scene.description.shapes[i].material;
-    scene.summary.shapes[i].material = name;
-    used.insert(name.empty() ? "(default)" : name);
+  const auto use = [&](ShapeSummary& shape, const ShapeDescription& described) {
+    shape.material = described.material;
+    if (!shape.material.empty())
+      used.insert(shape.material);
+    else if (group_used_by(described).empty())
+      used.insert("(default)");
+  };
+  for (std::size_t i = 0; i < scene.summary.shapes.size(); ++i)
+    use(scene.summary.shapes[i], scene.description.shapes[i]);
+  for (GroupSummary& group : scene.summary.groups) {
+    const GroupDescription& described = scene.description.groups[group_index(scene.description, group.name)];
+    for (std::size_t i = 0; i < group.shapes.size(); ++i) use(group.shapes[i], described.shapes[i]);
   }
   scene.summary.materials_in_use = {used.begin(), used.end()};
   scene.summary.features = features_in_use(scene);

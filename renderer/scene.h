@@ -31,11 +31,25 @@ struct ShapeSummary {
   std::uint64_t triangles = 0;  ///< handed to the intersector
   std::uint64_t spheres = 0;
   std::uint64_t faces_by_size[3] = {0, 0, 0};  ///< triangles, quads, larger, as the file has them
-  Bounds3d bounds;                             ///< world space; infinite for planes
+  /// Uses of groups that shape comes to, nesting resolved. Their ids: `id` for the first, first_extra_id and following
+  /// ones for the others.
+  std::uint64_t instances = 0;
+  std::uint32_t first_extra_id = 0;
+  std::uint64_t instanced_triangles = 0, instanced_spheres = 0;  ///< of all its uses together
+  Bounds3d bounds;  ///< world space (of a group's shape: the group's); infinite for planes
+};
+
+/// A group that is used.
+struct GroupSummary {
+  std::string name;
+  std::vector<ShapeSummary> shapes;  ///< ids are 0
+  std::uint64_t instances = 0;       ///< of its own shapes, nesting resolved
 };
 
 struct SceneSummary {
   std::vector<ShapeSummary> shapes;
+  std::vector<GroupSummary> groups;
+  std::uint64_t instances = 0;  ///< as the intersector holds them
   std::vector<std::string> materials_in_use;
   std::vector<std::string>
       features;                   ///< parts of the renderer that this scene switches on, e.g. "reflection", "fresnel"
@@ -59,6 +73,9 @@ struct PhaseSeconds {
   double build = 0;  ///< the intersector's own build
 };
 
+/// Stands for the material of an instance whose shapes keep their own.
+inline constexpr std::uint32_t kOwnMaterials = 0xffffffffu;
+
 class Scene {
  public:
   Scene();
@@ -72,12 +89,18 @@ class Scene {
   std::unique_ptr<const ShapeSet> shapes;
   std::unique_ptr<const RayIntersector> intersector;  ///< null when PrepareOptions::build was false
   std::vector<Material> materials;
-  std::vector<std::uint32_t> shape_materials;  ///< [shape] -> index into materials
+  std::vector<std::uint32_t> shape_materials;  ///< [shape] -> index into materials, or kOwnMaterials
   std::vector<Light> lights;
   BackgroundLight background;
   Rgb ambient;
   Camera camera;
   RadianceBound bound;
+  /// Index into materials of what a hit on an instance shows: the instance's, or else that of the group's shape.
+  std::uint32_t instance_material(const Instance& instance, ShapeId part) const {
+    const std::uint32_t own = shape_materials[instance.shape];
+    return own != kOwnMaterials ? own : shape_materials[part];
+  }
+
   SmallObjects small_objects;  ///< as the camera sees them; none unless the anti-aliasing asks for them
 };
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "renderer/groups.h"
 #include "renderer/suggestion.h"
 
 namespace raytree::reading {
@@ -27,16 +28,36 @@ void check(const Place& at, std::int64_t line, const CameraDescription& camera) 
   if (a.cross(b).length() < kLeastSine) at.fail(line, "up points along the line of sight; give another direction");
 }
 
+void check(const Place& at, std::int64_t line, const ShapeDescription& shape) {
+  const auto* scatter = std::get_if<ScatterShape>(&shape.kind);
+  if (scatter == nullptr) return;
+  if (scatter->least_scale > scatter->largest_scale) at.fail(line, "least_scale is larger than largest_scale");
+  if (scatter->lowest > scatter->highest) at.fail(line, "lowest lies above highest");
+}
+
 void check_references(const Place& root, const SceneDescription& scene) {
   std::unordered_map<std::string_view, bool> known;
   for (const MaterialDescription& material : scene.materials) known.emplace(material.name, true);
-  const Place shapes(root, "shapes");
-  for (const ShapeDescription& shape : scene.shapes) {
-    if (shape.material.empty() || known.contains(shape.material)) continue;
-    Place(shapes, shape.name)
-        .fail(shape.where.line, "unknown material " + in_quotes(shape.material) + "; " +
-                                    choices_text("materials of this scene", shape.material, names_of(scene.materials)));
+  const auto check_materials = [&](const Place& shapes, const std::vector<ShapeDescription>& list) {
+    for (const ShapeDescription& shape : list) {
+      if (shape.material.empty() || known.contains(shape.material)) continue;
+      Place(shapes, shape.name)
+          .fail(shape.where.line,
+                "unknown material " + in_quotes(shape.material) + "; " +
+                    choices_text("materials of this scene", shape.material, names_of(scene.materials)));
+    }
+  };
+  const Place shapes(root, "shapes"), groups(root, "groups");
+  check_materials(shapes, scene.shapes);
+  for (const GroupDescription& group : scene.groups) {
+    const Place at(groups, group.name);
+    check_materials(Place(at, "shapes"), group.shapes);
   }
+  check_groups(scene, [&](const GroupDescription* group, const ShapeDescription& shape, const std::string& message) {
+    if (group == nullptr) Place(shapes, shape.name).fail(shape.where.line, message);
+    const Place at(groups, group->name), inside(at, "shapes");
+    Place(inside, shape.name).fail(shape.where.line, message);
+  });
 }
 
 namespace {

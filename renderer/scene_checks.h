@@ -13,7 +13,9 @@ void check(const Place&, std::int64_t, const auto&) {}
 void check(const Place& at, std::int64_t line, const ImageDescription& image);
 void check(const Place& at, std::int64_t line, const CameraDescription& camera);
 
-/// Materials that shapes name must exist.
+void check(const Place& at, std::int64_t line, const ShapeDescription& shape);
+
+/// Materials, groups and terrains that shapes name must exist, and no group may hold itself.
 void check_references(const Place& root, const SceneDescription& scene);
 
 /// For row vectors: p * result. Scale, then rotation about x, y and z, then translation; exact at multiples of 90

@@ -167,6 +167,7 @@ struct DiscShape {
   Vec3d normal{0, 1, 0};
   double radius = 1;
 };
+inline constexpr double kLargestScatterHeight = 1e18;
 /// A fractal height field over the square [-size/2, size/2]^2 in x and z.
 struct TerrainShape {
   std::int64_t triangles = 1'000'000;  ///< up to 50 million; the count made is the nearest that a grid allows
@@ -181,7 +182,37 @@ struct SphereFlakeShape {
   Vec3d center{0, 0, 0};
   double radius = 1;
 };
-using ShapeKind = std::variant<MeshShape, SphereShape, PlaneShape, DiscShape, TerrainShape, SphereFlakeShape>;
+enum class TreeSpecies { broadleaf, conifer };
+/// Which half of a tree: they take different materials.
+enum class TreePart { wood, leaves };
+/// A tree on the origin, growing along y.
+struct TreeShape {
+  TreeSpecies species = TreeSpecies::broadleaf;
+  TreePart part = TreePart::wood;
+  double height = 10;
+  std::int64_t leaves = 8000;  ///< leaves, or sprays of needles, two triangles each
+  double leaf_size = 0.3;      ///< length
+  std::uint32_t seed = 1980;
+};
+/// One use of a group.
+struct InstanceShape {
+  std::string group;  ///< a name in SceneDescription::groups
+};
+/// Uses of a group spread over the surface of a terrain, upright, each turned and scaled at random.
+struct ScatterShape {
+  std::string group;
+  std::string terrain;       ///< a terrain of the same list of shapes
+  std::int64_t count = 100;  ///< at most; places that do not suit are tried again a limited number of times
+  double least_scale = 0.8, largest_scale = 1.2;
+  double lowest = -kLargestScatterHeight, highest = kLargestScatterHeight;  ///< world y of the places taken
+  double steepest = 35;  ///< slope, degrees
+  double sink = 0.1;     ///< how deep each stands in the ground, scene units
+  double clearings = 0;  ///< share of the ground that stays empty, in patches, [0, 1]
+  double clearing_size = 1;
+  std::uint32_t seed = 1980;
+};
+using ShapeKind = std::variant<MeshShape, SphereShape, PlaneShape, DiscShape, TerrainShape, SphereFlakeShape,
+                               TreeShape, InstanceShape, ScatterShape>;
 
 struct ShapeDescription {
   std::string name;
@@ -189,6 +220,14 @@ struct ShapeDescription {
   Matrix44d transform;   ///< object to world, row vectors; identity by default
   ShapeKind kind;
   SourceLocation where;  ///< for messages
+};
+
+/// Shapes in a space of their own, there to be used by instances, as often as one likes. Groups may hold instances of
+/// other groups.
+struct GroupDescription {
+  std::string name;
+  std::vector<ShapeDescription> shapes;
+  SourceLocation where;
 };
 
 struct SceneDescription {
@@ -202,6 +241,7 @@ struct SceneDescription {
   std::vector<CameraDescription> cameras;  ///< the first is the default one
   std::vector<LightDescription> lights;
   std::vector<MaterialDescription> materials;
+  std::vector<GroupDescription> groups;
   std::vector<ShapeDescription> shapes;
 };
 

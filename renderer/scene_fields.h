@@ -97,6 +97,18 @@ struct EnumTable<NormalSource> {
        {E::smooth, "smooth", "angle-weighted mean of the faces within crease_angle"},
        {E::flat, "flat", "the face's own"}}};
 };
+template <>
+struct EnumTable<TreeSpecies> {
+  using E = TreeSpecies;
+  static constexpr std::array<EnumEntry<E>, 2> entries{
+      {{E::broadleaf, "broadleaf", "a forked crown of leaves"}, {E::conifer, "conifer", "whorls of drooping boughs"}}};
+};
+template <>
+struct EnumTable<TreePart> {
+  using E = TreePart;
+  static constexpr std::array<EnumEntry<E>, 2> entries{
+      {{E::wood, "wood", "trunk and branches"}, {E::leaves, "leaves", "leaves or needles alone"}}};
+};
 
 // --- alternatives of a variant, told apart by the key "type" ------------------------------------------------
 
@@ -155,6 +167,23 @@ template <>
 struct Alternative<SphereFlakeShape> {
   static constexpr std::string_view name = "sphere_flake",
                                     text = "a sphere that carries nine smaller ones, each of which carries nine";
+};
+template <>
+struct Alternative<TreeShape> {
+  static constexpr std::string_view name = "tree",
+                                    text = "half of a tree on the origin, growing along y: its wood or its leaves";
+};
+template <>
+struct Alternative<InstanceShape> {
+  static constexpr std::string_view name = "instance",
+                                    text = "one use of a group of shapes; a material given here takes the place of all "
+                                           "of the group's";
+};
+template <>
+struct Alternative<ScatterShape> {
+  static constexpr std::string_view name = "scatter",
+                                    text = "uses of a group spread over a terrain, upright, each turned and scaled at "
+                                           "random; as instance";
 };
 
 // --- forms that exist in files only -------------------------------------------------------------------------
@@ -482,10 +511,58 @@ void visit_fields(Visitor& visit, T& flake) {
         flake.radius);
 }
 
+template <class Visitor, Is<TreeShape> T>
+void visit_fields(Visitor& visit, T& tree) {
+  visit(Field{.key = "species", .text = "How it grows"}, tree.species);
+  visit(Field{.key = "part", .text = "Which half; the two of equal keys fit"}, tree.part);
+  visit(Field{.key = "height", .text = "Height of the tree", .unit = "scene units", .range = kPositive}, tree.height);
+  visit(Field{.key = "leaves",
+              .text = "Number of leaves, or of sprays of needles; two triangles each",
+              .range = {1, 10'000'000}},
+        tree.leaves);
+  visit(Field{.key = "leaf_size",
+              .text = "Length of a leaf or spray, about",
+              .unit = "scene units",
+              .range = kPositive},
+        tree.leaf_size);
+  visit(Field{.key = "seed", .text = "Another number, another tree", .range = {0, 4294967295.0}}, tree.seed);
+}
+
+template <class Visitor, Is<InstanceShape> T>
+void visit_fields(Visitor& visit, T& instance) {
+  visit(Field{.key = "group", .text = "Name of a group of this file", .required = true}, instance.group);
+}
+
+template <class Visitor, Is<ScatterShape> T>
+void visit_fields(Visitor& visit, T& scatter) {
+  visit(Field{.key = "group", .text = "Name of a group of this file", .required = true}, scatter.group);
+  visit(Field{.key = "terrain", .text = "Name of a terrain among the shapes beside this one", .required = true},
+        scatter.terrain);
+  visit(Field{.key = "count",
+              .text = "Number of uses; fewer where the ground offers no more places after 16 tries for each",
+              .range = {0, 10'000'000}},
+        scatter.count);
+  visit(Field{.key = "least_scale", .text = "Scale of the smallest", .range = kPositive}, scatter.least_scale);
+  visit(Field{.key = "largest_scale", .text = "Scale of the largest; at least least_scale", .range = kPositive},
+        scatter.largest_scale);
+  visit(Field{.key = "lowest", .text = "World y below which nothing stands", .unit = "scene units"}, scatter.lowest);
+  visit(Field{.key = "highest", .text = "World y above which nothing stands", .unit = "scene units"}, scatter.highest);
+  visit(Field{.key = "steepest", .text = "Slope beyond which nothing stands", .unit = "degrees", .range = {0, 90}},
+        scatter.steepest);
+  visit(Field{.key = "sink", .text = "How deep each stands in the ground, times its scale", .unit = "scene units"},
+        scatter.sink);
+  visit(Field{.key = "clearings", .text = "Share of the ground that stays empty, in patches", .range = {0, 1}},
+        scatter.clearings);
+  visit(Field{.key = "clearing_size", .text = "Width of the patches, about", .unit = "scene units", .range = kPositive},
+        scatter.clearing_size);
+  visit(Field{.key = "seed", .text = "Another number, other places", .range = {0, 4294967295.0}}, scatter.seed);
+}
+
 template <class Visitor, Is<ShapeDescription> T>
 void visit_fields(Visitor& visit, T& shape) {
   visit.tagged(Field{.key = kTypeKey, .text = "Kind of shape", .required = true}, shape.kind);
-  visit(Field{.key = "material", .text = "Name of a material of this file", .absent = "the default material"},
+  visit(Field{.key = "material", .text = "Name of a material of this file",
+              .absent = "the default material; of instances: each shape's own"},
         shape.material);
   visit(
       Field{
@@ -510,6 +587,11 @@ void visit_fields(Visitor& visit, T& step) {
         step.matrix);
 }
 
+template <class Visitor, Is<GroupDescription> T>
+void visit_fields(Visitor& visit, T& group) {
+  visit(Field{.key = "shapes", .text = "Shapes by name, planes excepted; instances of other groups too"}, group.shapes);
+}
+
 template <class Visitor, Is<SceneDescription> T>
 void visit_fields(Visitor& visit, T& scene) {
   std::conditional_t<std::is_const_v<T>, const SceneVersion, SceneVersion> version;
@@ -522,6 +604,7 @@ void visit_fields(Visitor& visit, T& scene) {
   visit(Field{.key = "cameras", .text = "Cameras by name; the first is the default one"}, scene.cameras);
   visit(Field{.key = "lights", .text = "Lights by name"}, scene.lights);
   visit(Field{.key = "materials", .text = "Materials by name"}, scene.materials);
+  visit(Field{.key = "groups", .text = "Groups of shapes by name, each for any number of instances"}, scene.groups);
   visit(Field{.key = "shapes", .text = "Shapes by name"}, scene.shapes);
 }
 
@@ -532,14 +615,14 @@ template <class T>
 concept Table =
     Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> || Is<T, CameraDescription> ||
     Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, HighlightDescription> || Is<T, MaterialDescription> ||
-    Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
+    Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, GroupDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.
 template <class T>
 concept Named = requires(T& t) {
   t.name;
 }
-&&(Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, MaterialDescription> || Is<T, ShapeDescription>);
+&&(Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, MaterialDescription> || Is<T, ShapeDescription> || Is<T, GroupDescription>);
 
 /// What a named element is called in messages: "material" of "materials".
 template <Named T>
@@ -548,6 +631,7 @@ constexpr std::string_view noun_of() {
   if constexpr (Is<T, LightDescription>) return "light";
   if constexpr (Is<T, MaterialDescription>) return "material";
   if constexpr (Is<T, ShapeDescription>) return "shape";
+  if constexpr (Is<T, GroupDescription>) return "group";
 }
 
 template <class E>

@@ -163,7 +163,7 @@ void set_value(const Place& at, const Field& field, PathRest rest, const NewValu
   } else {
     T fresh{};
     if constexpr (Named<T>) fresh.name = out.name;
-    if constexpr (std::same_as<T, ShapeDescription>) fresh.where = out.where;
+    if constexpr (requires { fresh.where; }) fresh.where = out.where;
     read(at, field, value.json, fresh);
     out = std::move(fresh);
   }

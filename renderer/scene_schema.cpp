@@ -347,9 +347,17 @@ class SchemaWriter {
       out_.value(1);
     });
     out_.key("additionalProperties");
-    out_.begin_object();
-    object(T{});
-    out_.end_object();
+    if constexpr (std::same_as<T, ShapeDescription>) {
+      // Shapes stand in the scene and in groups.
+      nested([&] {
+        out_.key("$ref");
+        out_.value("#/$defs/shape");
+      });
+    } else {
+      out_.begin_object();
+      object(T{});
+      out_.end_object();
+    }
   }
   template <Table T>
   void schema(const Field&, const T& defaults) {
@@ -496,6 +504,10 @@ std::string scene_schema() {
   out.begin_object();
   schema.alternatives(std::variant<CheckerPattern>(), [](SchemaWriter&) {});
   out.end_object();
+  out.key("shape");
+  out.begin_object();
+  schema.object(ShapeDescription{});
+  out.end_object();
   out.key("transform_step");
   out.begin_object();
   schema.object(TransformStep{});
@@ -532,6 +544,7 @@ std::string scene_reference() {
             MaterialDescription{});
   out.table("materials.NAME.highlight", "W cos^n (Phong 1973, eq. 4.5).", HighlightDescription{});
   out.alternatives("Where a color or checker stands", std::variant<CheckerPattern>());
+  out.table("groups.NAME", "One group of shapes, in a space of its own.", GroupDescription{});
   out.table("shapes.NAME", "One shape; these keys and those of its type.", ShapeDescription{});
   out.alternatives("shapes.NAME", ShapeKind{});
   out.table("shapes.NAME.groups[]", "A run of faces.", FaceGroup{});

@@ -283,7 +283,7 @@ void read(const Place& at, const Field&, JsonValue value, std::vector<T>& out) {
     const Place place(at, member.key);
     T& element = out.emplace_back();
     element.name = member.key;
-    if constexpr (std::same_as<T, ShapeDescription>) element.where = place.location(member.line);
+    if constexpr (requires { element.where; }) element.where = place.location(member.line);
     read_table(place, member.value, element);
   });
 }

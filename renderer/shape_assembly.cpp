@@ -9,11 +9,15 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/instance_transform.h"
 #include "geometry/mesh_file.h"
 #include "geometry/sphere_flake.h"
 #include "geometry/terrain.h"
+#include "geometry/tree.h"
 #include "geometry/triangulation.h"
 #include "geometry/vertex_normals.h"
+#include "renderer/groups.h"
+#include "renderer/scatter.h"
 
 namespace raytree {
 namespace {
@@ -70,7 +74,7 @@ Vec3d checked_normal(const Vec3d& normal, const Matrix44d& transform, const Sour
 bool mirrors(const Matrix44d& m) { return m.determinant() < 0; }
 
 /// The factor of a transform that scales all directions alike; throws for any other.
-double uniform_scale(const Matrix44d& m, const char* kind, const SourceLocation& where) {
+double uniform_scale(const Matrix44d& m, const std::string& kind, const SourceLocation& where) {
   const Vec3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
   const double scale = x.length();
   const double tolerance = 1e-9 * scale * scale;
@@ -79,7 +83,7 @@ double uniform_scale(const Matrix44d& m, const char* kind, const SourceLocation&
                        std::abs(y.dot(z)) <= tolerance;
   if (!uniform || !(scale > 0))
     throw Error(ErrorKind::bad_input, where,
-                std::string("a ") + kind + " takes a transform with one scale for all axes");
+                kind + " takes a transform with one scale for all axes");
   return scale;
 }
 
@@ -103,7 +107,7 @@ void transform_mesh(TriangleMesh& mesh, const Matrix44d& m) {
   reverse(mesh.texture_corners);
 }
 
-/// Everything finite of the scene in world space, in double, until the scene's origin is known.
+/// A list of shapes in the space of the world or of its group, in double, until that space's origin is known.
 struct Assembly {
   std::vector<MeshEntry> meshes;
   struct WorldSphere {
@@ -126,6 +130,15 @@ struct Assembly {
   };
   std::vector<WorldDisc> discs;
   std::vector<Plane> planes;
+  struct Use {
+    std::uint32_t group;
+    Matrix44d transform;
+    ShapeId shape;
+  };
+  std::vector<Use> uses;  ///< of groups; those of one shape stand together
+
+  bool has_round() const { return !spheres.empty() || !flakes.empty() || !discs.empty(); }
+  bool has_shapes() const { return has_round() || !meshes.empty(); }
 };
 
 void count_faces(const PolygonMesh& mesh, ShapeSummary& summary) {
@@ -148,6 +161,7 @@ void apply_normal_source(PolygonMesh& mesh, const MeshShape& shape, const Source
   if (shape.normals != NormalSource::flat) compute_vertex_normals(mesh, shape.crease_angle * std::numbers::pi / 180);
 }
 
+/// Fills the assembly of one list of shapes.
 class Assembler {
  public:
   Assembler(const SceneDescription& scene, const PrepareOptions& options, Warnings& warnings)
@@ -155,6 +169,20 @@ class Assembler {
 
   Assembly assembly;
 
+  /// The list's shapes are ShapeId `first` and following ones.
+  void add_all(std::vector<ShapeDescription>& shapes, ShapeId first, std::vector<ShapeSummary>& summaries) {
+    summaries.resize(shapes.size());
+    // What is scattered needs the ground that it stands on.
+    for (const bool scatters : {false, true})
+      for (std::size_t i = 0; i < shapes.size(); ++i) {
+        if (std::holds_alternative<ScatterShape>(shapes[i].kind) != scatters) continue;
+        if (options_.stop != nullptr && options_.stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
+        list_ = &shapes, first_ = first;
+        add(shapes[i], first + static_cast<ShapeId>(i), summaries[i]);
+      }
+  }
+
+ private:
   void add(ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.name = shape.name;
     summary.id = id + 1;
@@ -165,7 +193,6 @@ class Assembler {
               "the shape reaches further than 1e12 units from the origin", shape.where);
   }
 
- private:
   void add_mesh(TriangleMesh&& mesh, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     transform_mesh(mesh, shape.transform);
     summary.triangles = mesh.triangle_count();
@@ -209,7 +236,7 @@ class Assembler {
     summary.kind = "sphere";
     summary.spheres = 1;
     const Vec3d center = transformed_point(kind.center, shape.transform);
-    const double radius = kind.radius * uniform_scale(shape.transform, "sphere", shape.where);
+    const double radius = kind.radius * uniform_scale(shape.transform, "a sphere", shape.where);
     require(radius > 0, "a radius must be larger than 0", shape.where);
     summary.bounds = {center - Vec3d(radius), center + Vec3d(radius)};
     assembly.spheres.push_back({center, radius, id});
@@ -220,7 +247,7 @@ class Assembler {
     begin_phase("generating " + shape.name);
     const SphereFlakeParameters parameters{kind.levels, kind.center, kind.radius};
     Assembly::Flake flake{make_sphere_flake(parameters), shape.transform,
-                          uniform_scale(shape.transform, "sphere flake", shape.where), id};
+                          uniform_scale(shape.transform, "a sphere flake", shape.where), id};
     summary.spheres = flake.arrays.sphere_count();
     for (std::size_t i = 0; i < flake.arrays.sphere_count(); ++i) {
       const Vec3d center = transformed_point(flake.arrays.origin + Vec3d(flake.arrays.centers[i]), shape.transform);
@@ -242,7 +269,7 @@ class Assembler {
 
   void add_kind(DiscShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "disc";
-    const double scale = uniform_scale(shape.transform, "disc", shape.where);
+    const double scale = uniform_scale(shape.transform, "a disc", shape.where);
     const Vec3d center = transformed_point(kind.center, shape.transform);
     const Vec3d normal = checked_normal(kind.normal, shape.transform, shape.where);
     const double radius = kind.radius * scale;
@@ -253,10 +280,44 @@ class Assembler {
     assembly.discs.push_back({center, normal, radius, id});
   }
 
+  void add_kind(TreeShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "tree";
+    begin_phase("growing " + shape.name);
+    const TreeParameters parameters{kind.species == TreeSpecies::conifer ? TreeForm::conifer : TreeForm::broadleaf,
+                                    kind.height, kind.leaves, kind.leaf_size, kind.seed};
+    TriangleMesh mesh = kind.part == TreePart::wood ? make_tree_wood(parameters) : make_tree_leaves(parameters);
+    summary.faces_by_size[0] = mesh.triangle_count();
+    add_mesh(std::move(mesh), shape, id, summary);
+  }
+
+  void add_kind(InstanceShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "instance";
+    assembly.uses.push_back({group_index(scene_, kind.group), shape.transform, id});
+  }
+
+  void add_kind(ScatterShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "scatter";
+    begin_phase("placing " + shape.name);
+    std::size_t ground = 0;
+    while ((*list_)[ground].name != kind.terrain || !std::holds_alternative<TerrainShape>((*list_)[ground].kind))
+      ++ground;
+    const auto entry = std::find_if(assembly.meshes.begin(), assembly.meshes.end(),
+                                    [&](const MeshEntry& mesh) { return mesh.shape == first_ + ground; });
+    const std::uint32_t group = group_index(scene_, kind.group);
+    const TerrainGrid grid = terrain_grid(std::get<TerrainShape>((*list_)[ground].kind).triangles);
+    const std::vector<Matrix44d> places = scattered(kind, entry->mesh, grid);
+    if (static_cast<std::int64_t>(places.size()) < kind.count)
+      warnings_.push_back({shape.where, "the terrain has no more places that suit: fewer uses than asked for",
+                           kind.count - static_cast<std::int64_t>(places.size())});
+    for (const Matrix44d& place : places) assembly.uses.push_back({group, place * shape.transform, id});
+  }
+
   void begin_phase(const std::string& text) const {
     if (options_.on_phase) options_.on_phase(text);
   }
 
+  const std::vector<ShapeDescription>* list_ = nullptr;  ///< under way
+  ShapeId first_ = 0;
   const SceneDescription& scene_;
   const PrepareOptions& options_;
   Warnings& warnings_;
@@ -271,8 +332,8 @@ Vec3d scene_origin(const Bounds3d& bounds) {
   return largest(center) > largest(size) ? center : Vec3d(0, 0, 0);
 }
 
-void move_to_scene_space(Assembly& assembly, ShapeSet& shapes) {
-  const Vec3d origin = shapes.origin;
+/// Moves all but planes to a space that begins at `origin`.
+void move_to_space(Assembly& assembly, const Vec3d& origin, BoundedShapes& shapes) {
   for (MeshEntry& entry : assembly.meshes) {
     const Vec3d shift = entry.mesh.origin - origin;
     if (shift != Vec3d(0, 0, 0))
@@ -304,31 +365,218 @@ void move_to_scene_space(Assembly& assembly, ShapeSet& shapes) {
     shapes.discs.normal.push_back(Vec3f(disc.normal));
     shapes.discs.shape.push_back(disc.shape);
   }
-  shapes.planes = std::move(assembly.planes);
-  for (Plane& plane : shapes.planes) plane.point -= origin;
+}
+
+Bounds3d transformed_bounds(const Bounds3d& box, const Matrix44d& m) {
+  Bounds3d result;
+  for (int corner = 0; corner < 8; ++corner)
+    result.extendBy(transformed_point({corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                       corner & 4 ? box.max.z : box.min.z},
+                                      m));
+  return result;
+}
+
+/// A group in a space of its own.
+struct GroupAssembly {
+  BoundedShapes shapes;
+  std::vector<Assembly::Use> uses;
+  Bounds3d bounds;  ///< of its own shapes, in the group's coordinates
+  Vec3d origin;     ///< where its shapes' space begins, in the group's coordinates
+  bool has_shapes = false, has_round = false;
+  std::uint64_t uses_in_all = 0;  ///< that one use of it comes to, itself included
+  std::uint64_t triangles = 0, spheres = 0;
+};
+
+/// The groups that shapes use, directly or through others, assembled; and their uses, nesting resolved.
+class GroupAssembler {
+ public:
+  GroupAssembler(SceneDescription& description, const PrepareOptions& options, Warnings& warnings)
+      : description_(description), options_(options), warnings_(warnings), groups_(description.groups.size()) {
+    ShapeId first = static_cast<ShapeId>(description.shapes.size());
+    for (const GroupDescription& group : description.groups) {
+      first_shapes_.push_back(first);
+      first += static_cast<ShapeId>(group.shapes.size());
+    }
+    summaries_.resize(groups_.size());
+    done_.resize(groups_.size(), false);
+  }
+
+  /// Assembles what `uses` refer to. Cycles must have been refused.
+  void assemble(const std::vector<Assembly::Use>& uses) {
+    for (const Assembly::Use& use : uses)
+      if (!done_[use.group]) assemble(use.group);
+  }
+
+  /// Calls function(group index, transform) for each group with shapes that `use` comes to.
+  template <class Function>
+  void for_each(const Assembly::Use& use, Function&& function) const {
+    resolve(use.group, use.transform, function);
+  }
+
+  const GroupAssembly& operator[](std::size_t i) const { return groups_[i]; }
+
+  /// How many uses with shapes `use` comes to, all others of the scene being `before`.
+  std::uint64_t checked_count(const Assembly::Use& use, std::uint64_t before, const SourceLocation& where) const {
+    const std::uint64_t count = groups_[use.group].uses_in_all;
+    require(count <= kMostInstances && before + count <= kMostInstances,
+            "the groups within groups of this scene come to more than 50 million instances", where);
+    return count;
+  }
+
+  void hand_over(ShapeSet& shapes, SceneSummary& summary) {
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+      shapes.groups.push_back(std::move(groups_[i].shapes));
+      if (!done_[i]) continue;
+      summaries_[i].name = description_.groups[i].name;
+      summary.groups.push_back(std::move(summaries_[i]));
+    }
+  }
+  void count_use(std::uint32_t group) { ++summaries_[group].instances; }
+
+ private:
+  void assemble(std::uint32_t index) {
+    done_[index] = true;
+    GroupAssembly& group = groups_[index];
+    Assembler assembler(description_, options_, warnings_);
+    std::vector<ShapeSummary>& shapes = summaries_[index].shapes;
+    assembler.add_all(description_.groups[index].shapes, first_shapes_[index], shapes);
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      shapes[i].id = 0;
+      shapes[i].material = description_.groups[index].shapes[i].material;
+      group.bounds.extendBy(shapes[i].bounds);
+      group.triangles += shapes[i].triangles;
+      group.spheres += shapes[i].spheres;
+    }
+    group.has_round = assembler.assembly.has_round();
+    group.has_shapes = assembler.assembly.has_shapes();
+    group.origin = scene_origin(group.bounds);
+    move_to_space(assembler.assembly, group.origin, group.shapes);
+    group.uses = std::move(assembler.assembly.uses);
+    assemble(group.uses);
+    group.uses_in_all = group.has_shapes ? 1 : 0;
+    for (const Assembly::Use& use : group.uses)
+      group.uses_in_all = std::min(group.uses_in_all + groups_[use.group].uses_in_all, 2 * kMostInstances);
+  }
+
+  template <class Function>
+  void resolve(std::uint32_t index, const Matrix44d& transform, Function& function) const {
+    const GroupAssembly& group = groups_[index];
+    if (group.has_shapes) function(index, transform);
+    for (const Assembly::Use& use : group.uses)
+      if (groups_[use.group].uses_in_all > 0) resolve(use.group, use.transform * transform, function);
+  }
+
+  SceneDescription& description_;
+  const PrepareOptions& options_;
+  Warnings& warnings_;
+  std::vector<GroupAssembly> groups_;
+  std::vector<GroupSummary> summaries_;
+  std::vector<ShapeId> first_shapes_;
+  std::vector<bool> done_;
+};
+
+/// `transform` takes the group's own space to scene space.
+Instance make_instance(const Matrix44d& transform, const GroupAssembly& group, const std::string& group_name,
+                       const SourceLocation& where) {
+  Instance instance;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 3; ++column)
+      instance.to_scene[row][column] = static_cast<float>(transform[row][column]);
+  const InstanceTransform single(instance);
+  const double determinant = std::abs(single.determinant());
+  const auto refuse = [&](const char* does, const char* how) {
+    throw Error(ErrorKind::bad_input, where,
+                std::string("the instance ") + does + " the group \"" + group_name + "\" " + how);
+  };
+  // NaN fails the comparisons.
+  if (!(determinant >= kLeastDeterminant && determinant <= kMostDeterminant))
+    refuse("scales", "by less than 1e-10 or more than 1e10");
+  if (!(single.cancellation() <= kMostCancellation))
+    refuse("flattens", "so much that single precision cannot undo it");
+  if (group.has_round)
+    uniform_scale(transform, "an instance of the group \"" + group_name + "\", which holds spheres or discs,",
+                  where);
+  return instance;
+}
+
+/// The instances of the scene and what they add to the bounds of their shapes, in world space.
+void bound_instances(const Assembly& assembly, const GroupAssembler& groups, const SceneDescription& description,
+                     SceneSummary& summary) {
+  for (const Assembly::Use& use : assembly.uses) {
+    ShapeSummary& shape = summary.shapes[use.shape];
+    const SourceLocation& where = description.shapes[use.shape].where;
+    summary.instances += groups.checked_count(use, summary.instances, where);
+    groups.for_each(use, [&](std::uint32_t index, const Matrix44d& transform) {
+      check_transform(transform, where);
+      const GroupAssembly& group = groups[index];
+      shape.bounds.extendBy(transformed_bounds(group.bounds, transform));
+      ++shape.instances;
+      shape.instanced_triangles += group.triangles;
+      shape.instanced_spheres += group.spheres;
+    });
+    if (!shape.bounds.isEmpty())
+      require(is_within_reach(shape.bounds.min) && is_within_reach(shape.bounds.max),
+              "the instance reaches further than 1e12 units from the origin", where);
+  }
+}
+
+void make_instances(const Assembly& assembly, GroupAssembler& groups, const SceneDescription& description,
+                    ShapeSet& shapes, SceneSummary& summary) {
+  shapes.instances.reserve(summary.instances);
+  auto next_object = static_cast<std::uint32_t>(description.shapes.size());
+  Matrix44d to_scene;
+  to_scene.setTranslation(-shapes.origin);
+  std::vector<bool> seen(description.shapes.size(), false);
+  for (const Assembly::Use& use : assembly.uses)
+    groups.for_each(use, [&](std::uint32_t index, const Matrix44d& transform) {
+      Matrix44d from_origin;
+      from_origin.setTranslation(groups[index].origin);
+      Instance instance = make_instance(from_origin * transform * to_scene, groups[index],
+                                        description.groups[index].name, description.shapes[use.shape].where);
+      instance.group = index;
+      instance.shape = use.shape;
+      // The first use of a shape is the object of that shape's id; further ones follow all shapes.
+      instance.object = seen[use.shape] ? next_object++ : use.shape;
+      if (seen[use.shape] && summary.shapes[use.shape].first_extra_id == 0)
+        summary.shapes[use.shape].first_extra_id = instance.object + 1;
+      seen[use.shape] = true;
+      shapes.instances.push_back(instance);
+      groups.count_use(index);
+    });
 }
 
 }  // namespace
 
 ShapeSet assemble_shapes(SceneDescription& description, const Vec3d& eye, const PrepareOptions& options,
                          SceneSummary& summary, Warnings& warnings) {
+  check_groups(description, [](const GroupDescription*, const ShapeDescription& shape, const std::string& message) {
+    throw Error(ErrorKind::bad_input, shape.where, message);
+  });
   Assembler assembler(description, options, warnings);
-  summary.shapes.resize(description.shapes.size());
-  for (std::size_t i = 0; i < description.shapes.size(); ++i) {
-    if (options.stop != nullptr && options.stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
-    ShapeSummary& shape = summary.shapes[i];
-    assembler.add(description.shapes[i], static_cast<ShapeId>(i), shape);
+  Assembly& assembly = assembler.assembly;
+  assembler.add_all(description.shapes, 0, summary.shapes);
+  // Uses in the order of the shapes, whichever kind came first.
+  std::stable_sort(assembly.uses.begin(), assembly.uses.end(),
+                   [](const Assembly::Use& a, const Assembly::Use& b) { return a.shape < b.shape; });
+  GroupAssembler groups(description, options, warnings);
+  groups.assemble(assembly.uses);
+  bound_instances(assembly, groups, description, summary);
+  for (const ShapeSummary& shape : summary.shapes)
     if (!shape.bounds.isInfinite()) summary.bounds.extendBy(shape.bounds);
-  }
+
   ShapeSet shapes;
   Bounds3d place = summary.bounds;
-  if (place.isEmpty() && !assembler.assembly.planes.empty()) {
+  if (place.isEmpty() && !assembly.planes.empty()) {
     // Planes have no bounds; where they are seen is where they are given and where the eye is.
     place.extendBy(eye);
-    for (const Plane& plane : assembler.assembly.planes) place.extendBy(plane.point);
+    for (const Plane& plane : assembly.planes) place.extendBy(plane.point);
   }
   shapes.origin = scene_origin(place);
-  move_to_scene_space(assembler.assembly, shapes);
+  move_to_space(assembly, shapes.origin, shapes);
+  shapes.planes = std::move(assembly.planes);
+  for (Plane& plane : shapes.planes) plane.point -= shapes.origin;
+  make_instances(assembly, groups, description, shapes, summary);
+  groups.hand_over(shapes, summary);
   summary.array_bytes = memory_bytes(shapes);
   return shapes;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "geometry/instance_transform.h"
 #include "geometry/surface.h"
 #include "renderer/render.h"
 
@@ -80,6 +81,73 @@ class OutlineBuilder {
   std::vector<Vec2d> points_;
   Vec2d first_, far_;
 };
+
+/// A few points that stand for all that a group holds, so that an instance's outline costs next to nothing: most
+/// instances show after a few of them that they are not small.
+class GroupOutline {
+ public:
+  explicit GroupOutline(const BoundedShapes& group) : group_(group) {}
+
+  /// Spheres and discs one by one where they are few and alone; their outlines are then exact.
+  bool is_few_rounds() const {
+    return group_.meshes.empty() && group_.spheres.shape.size() + group_.discs.shape.size() <= kFewRounds;
+  }
+
+  /// The farthest points of the group in directions all around. Their hull lies inside the group's own; of a sphere it
+  /// has 98 % of the outline's area.
+  const std::vector<Vec3d>& farthest_points() {
+    if (!farthest_.empty()) return farthest_;
+    std::vector<Vec3d> directions(kDirections);
+    for (int i = 0; i < kDirections; ++i) {  // a spiral of equal steps in height and the golden angle about it
+      const double y = 1 - (2 * i + 1.0) / kDirections, ring = std::sqrt(1 - y * y), angle = 2.399963229728653 * i;
+      directions[static_cast<std::size_t>(i)] = {ring * std::cos(angle), y, ring * std::sin(angle)};
+    }
+    std::vector<double> reach(kDirections, -std::numeric_limits<double>::infinity());
+    farthest_.resize(kDirections);
+    for_each_point([&](const Vec3d& point, double radius) {
+      for (std::size_t i = 0; i < kDirections; ++i)
+        if (const double r = point.dot(directions[i]) + radius; r > reach[i])
+          reach[i] = r, farthest_[i] = point + directions[i] * radius;
+    });
+    return farthest_;
+  }
+
+ private:
+  static constexpr int kDirections = 128;
+  static constexpr std::size_t kFewRounds = 16;
+
+  template <class Function>
+  void for_each_point(Function&& function) const {
+    for (const Imath::V4f& s : group_.spheres.center_radius) function(Vec3d(s.x, s.y, s.z), double(s.w));
+    for (const Imath::V4f& d : group_.discs.center_radius) function(Vec3d(d.x, d.y, d.z), double(d.w));
+    for (const MeshEntry& entry : group_.meshes)
+      for (const Vec3f& position : entry.mesh.positions) function(Vec3d(position), 0.0);
+  }
+
+  const BoundedShapes& group_;
+  std::vector<Vec3d> farthest_;
+};
+
+/// The outline of one instance, where it is small.
+std::optional<SmallObject> instance_outline(const BoundedShapes& group, GroupOutline& points, const Instance& instance,
+                                            const Camera& camera) {
+  const InstanceTransform transform(instance);
+  OutlineBuilder outline(camera);
+  if (points.is_few_rounds()) {
+    const double scale = transform.scale();
+    for (const Imath::V4f& s : group.spheres.center_radius)
+      if (!outline.add_sphere(transform.point({s.x, s.y, s.z}), s.w * scale)) return std::nullopt;
+    for (std::size_t i = 0; i < group.discs.shape.size(); ++i) {
+      const Imath::V4f& d = group.discs.center_radius[i];
+      const Vec3d normal = unit(transform.normal(Vec3d(group.discs.normal[i])));
+      if (!outline.add_circle(transform.point({d.x, d.y, d.z}), normal, d.w * scale)) return std::nullopt;
+    }
+    return outline.finish(instance.object);
+  }
+  for (const Vec3d& point : points.farthest_points())
+    if (!outline.add(transform.point(point))) return std::nullopt;
+  return outline.finish(instance.object);
+}
 
 }  // namespace
 
@@ -193,6 +261,10 @@ SmallObjects::SmallObjects(const ShapeSet& shapes, const Camera& camera, int wid
       small = outline.add(Vec3d(entry.mesh.positions[entry.mesh.corners[i]]));
     if (small) keep(outline.finish(entry.shape));
   }
+  std::vector<GroupOutline> groups;
+  if (!shapes.instances.empty()) groups.assign(shapes.groups.begin(), shapes.groups.end());
+  for (const Instance& instance : shapes.instances)
+    keep(instance_outline(shapes.groups[instance.group], groups[instance.group], instance, camera));
   sort_into_tiles(width, height);
 }
 

@@ -76,6 +76,23 @@ class RandomScenes {
             mesh_shape(triangles(corners, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}), any_material(), NormalSource::flat));
       }
     }
+    // Half of the scenes show some of their shapes through instances, in their own materials or another.
+    if (chance(0.5)) {
+      GroupDescription group{"group", {}, {}};
+      while (scene.shapes.size() > 1) {
+        if (!std::holds_alternative<PlaneShape>(scene.shapes.back().kind)) group.shapes.push_back(scene.shapes.back());
+        scene.shapes.pop_back();
+      }
+      scene.groups.push_back(std::move(group));
+      const int uses = integer(1, 4);
+      for (int i = 0; i < uses; ++i) {
+        ShapeDescription use = shape(InstanceShape{"group"}, chance(0.3) ? any_material() : "");
+        Matrix44d turned;
+        turned.rotate(point(3));
+        use.transform = scaling(Vec3d(uniform(0.4, 1.2) * (chance(0.3) ? -1 : 1))) * turned * translation(point(2));
+        scene.shapes.push_back(std::move(use));
+      }
+    }
     const int lights = integer(0, 3);
     const auto falloff = [&] { return static_cast<Falloff>(integer(0, 2)); };
     for (int i = 0; i < lights; ++i) {
@@ -100,8 +117,12 @@ class RandomScenes {
 /// Meshes are consumed by prepare(): a scene that is rendered twice is copied with meshes of its own.
 SceneDescription deep_copy(const SceneDescription& scene) {
   SceneDescription copy = scene;
-  for (ShapeDescription& s : copy.shapes)
-    if (auto* mesh = std::get_if<MeshShape>(&s.kind)) mesh->mesh = std::make_shared<PolygonMesh>(*mesh->mesh);
+  const auto copy_meshes = [](std::vector<ShapeDescription>& shapes) {
+    for (ShapeDescription& s : shapes)
+      if (auto* mesh = std::get_if<MeshShape>(&s.kind)) mesh->mesh = std::make_shared<PolygonMesh>(*mesh->mesh);
+  };
+  copy_meshes(copy.shapes);
+  for (GroupDescription& group : copy.groups) copy_meshes(group.shapes);
   return copy;
 }
 

@@ -111,6 +111,41 @@ TEST(Determinism, PicturesOfEveryFeatureAreBitIdentical) {
   expect_the_same_picture_always(std::move(scene), "busy, grid:3");
 }
 
+/// The busy scene's things once more through instances: nested, turned, mirrored, stretched.
+SceneDescription instanced_scene() {
+  SceneDescription scene = busy_scene();
+  const auto use = [](const char* group, const Matrix44d& transform, const char* material = "") {
+    ShapeDescription result = shape(InstanceShape{group}, material);
+    result.transform = transform;
+    return result;
+  };
+  scene.groups.push_back({"balls",
+                          {shape(SphereShape{{-0.6, 0, 0}, 0.5}, "glass"), shape(SphereShape{{0.5, 0, 0}, 0.4}, "mirror"),
+                           shape(DiscShape{{0, 0.8, 0}, {0, 1, 0.3}, 0.4}, "dull")},
+                          {}});
+  scene.groups.push_back({"globe", {mesh_shape(globe_mesh(0.5, 24, 12), "dull", NormalSource::smooth)}, {}});
+  scene.groups.push_back(
+      {"both", {use("balls", translation({0, 1, 0})), use("globe", scaling({1, -0.4, 0.7})), use("globe", translation({1, 0, 0}), "glass")}, {}});
+  for (int i = 0; i < 12; ++i) {
+    Matrix44d turned;
+    turned.rotate(Vec3d(0.1 * i, 0.7 * i, 0));
+    scene.shapes.push_back(use("both", scaling(Vec3d(i % 2 == 0 ? 0.5 : -0.4)) * turned *
+                                           translation({-3 + 0.55 * i, -0.6 + 0.3 * (i % 4), 1 - 0.4 * (i % 3)})));
+  }
+  return scene;
+}
+
+TEST(Determinism, PicturesOfInstancesAreBitIdentical) {
+  expect_the_same_picture_always(instanced_scene(), "instances");
+  SceneDescription scene = instanced_scene();
+  scene.image = {70, 50};
+  scene.render.antialias.method = Antialiasing::Method::whitted;
+  expect_the_same_picture_always(std::move(scene), "instances, whitted");
+  const RenderResult result = rendered(instanced_scene());
+  expect_finite(result.film);
+  EXPECT_EQ(result.statistics.not_finite_samples, 0u);
+}
+
 TEST(Determinism, PicturesOfRaysAimedAtVerticesAreBitIdentical) {
   expect_the_same_picture_always(vertex_scene(1), "vertices");
   expect_the_same_picture_always(vertex_scene(2), "vertices, grid:2");

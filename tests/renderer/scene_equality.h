@@ -98,6 +98,21 @@ inline bool equal(const SphereFlakeShape& a, const SphereFlakeShape& b) {
   const auto& [levels, center, radius] = a;
   return levels == b.levels && center == b.center && radius == b.radius;
 }
+inline bool equal(const TreeShape& a, const TreeShape& b) {
+  const auto& [species, part, height, leaves, leaf_size, seed] = a;
+  return species == b.species && part == b.part && height == b.height && leaves == b.leaves &&
+         leaf_size == b.leaf_size && seed == b.seed;
+}
+inline bool equal(const InstanceShape& a, const InstanceShape& b) {
+  const auto& [group] = a;
+  return group == b.group;
+}
+inline bool equal(const ScatterShape& a, const ScatterShape& b) {
+  const auto& [group, terrain, count, least, largest, lowest, highest, steepest, sink, clearings, size, seed] = a;
+  return group == b.group && terrain == b.terrain && count == b.count && least == b.least_scale &&
+         largest == b.largest_scale && lowest == b.lowest && highest == b.highest && steepest == b.steepest &&
+         sink == b.sink && clearings == b.clearings && size == b.clearing_size && seed == b.seed;
+}
 template <class... T>
 bool equal(const std::variant<T...>& a, const std::variant<T...>& b) {
   return a.index() == b.index() && std::visit([&]<class V>(const V& value) { return equal(value, std::get<V>(b)); }, a);
@@ -119,17 +134,25 @@ inline bool equal(const ShapeDescription& a, const ShapeDescription& b) {
   return name == b.name && material == b.material && transform == b.transform && equal(kind, b.kind);
 }
 template <Named T>
+bool equal(const std::vector<T>& a, const std::vector<T>& b);
+/// All but where it stood in its file.
+inline bool equal(const GroupDescription& a, const GroupDescription& b) {
+  const auto& [name, shapes, where] = a;
+  (void)where;
+  return name == b.name && equal(shapes, b.shapes);
+}
+template <Named T>
 bool equal(const std::vector<T>& a, const std::vector<T>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const T& x, const T& y) { return equal(x, y); });
 }
 /// All but name and folder, which a file does not hold.
 inline bool equal(const SceneDescription& a, const SceneDescription& b) {
-  const auto& [name, folder, title, image, render, background, ambient, cameras, lights, materials, shapes] = a;
+  const auto& [name, folder, title, image, render, background, ambient, cameras, lights, materials, groups, shapes] = a;
   (void)name;
   (void)folder;
   return title == b.title && equal(image, b.image) && equal(render, b.render) && equal(background, b.background) &&
          ambient == b.ambient && equal(cameras, b.cameras) && equal(lights, b.lights) &&
-         equal(materials, b.materials) && equal(shapes, b.shapes);
+         equal(materials, b.materials) && equal(groups, b.groups) && equal(shapes, b.shapes);
 }
 
 }  // namespace raytree::test

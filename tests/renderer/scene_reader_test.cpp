@@ -599,12 +599,39 @@ TEST(WriteScene, ReadsBackEqual) {
     Randomizer randomizer(seed);
     visit_fields(randomizer, scene);
     scene.image.width = std::max(1, scene.image.width);
-    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
-      ShapeDescription& shape = scene.shapes[i];
-      shape.material = i == 0 ? "" : scene.materials.at(i).name;
-      if (auto* mesh = std::get_if<MeshShape>(&shape.kind); mesh && mesh->file.empty() && !mesh->mesh)
-        mesh->file = "x.ply";
-    }
+    // Names that others refer to must exist, and a group may only hold groups behind it.
+    const auto mend = [&](std::vector<ShapeDescription>& shapes, std::size_t next_group) {
+      const auto use = [&](ShapeDescription& shape, std::string& group) {
+        if (next_group < scene.groups.size())
+          group = scene.groups[next_group].name;
+        else
+          shape.kind = SphereShape{};
+      };
+      for (std::size_t i = 0; i < shapes.size(); ++i) {
+        ShapeDescription& shape = shapes[i];
+        shape.material = i == 0 ? "" : scene.materials.at(i).name;
+        if (auto* mesh = std::get_if<MeshShape>(&shape.kind); mesh && mesh->file.empty() && !mesh->mesh)
+          mesh->file = "x.ply";
+        if (std::holds_alternative<PlaneShape>(shape.kind) && next_group > 0) shape.kind = TerrainShape{};
+        if (auto* scatter = std::get_if<ScatterShape>(&shape.kind)) {
+          shapes[(i + 1) % shapes.size()].kind = TerrainShape{};
+          scatter->terrain = shapes[(i + 1) % shapes.size()].name;
+          scatter->largest_scale += scatter->least_scale;
+          scatter->highest = scatter->lowest + 1;
+          use(shape, scatter->group);
+        }
+        if (auto* instance = std::get_if<InstanceShape>(&shape.kind)) use(shape, instance->group);
+      }
+      // What became a terrain last may have stood for another one's group.
+      for (ShapeDescription& shape : shapes)
+        if (auto* scatter = std::get_if<ScatterShape>(&shape.kind))
+          if (std::none_of(shapes.begin(), shapes.end(), [&](const ShapeDescription& s) {
+                return s.name == scatter->terrain && std::holds_alternative<TerrainShape>(s.kind);
+              }))
+            shape.kind = SphereShape{};
+    };
+    mend(scene.shapes, 0);
+    for (std::size_t i = 0; i < scene.groups.size(); ++i) mend(scene.groups[i].shapes, i + 1);
     const std::string text = write_scene(scene);
     try {
       const SceneDescription read = read_scene(text, "written", "");
@@ -667,8 +694,12 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(DiscShape{}), 3);
   EXPECT_EQ(count(TerrainShape{}), 5);
   EXPECT_EQ(count(SphereFlakeShape{}), 3);
+  EXPECT_EQ(count(TreeShape{}), 6);
+  EXPECT_EQ(count(InstanceShape{}), 1);
+  EXPECT_EQ(count(ScatterShape{}), 12);
+  EXPECT_EQ(count(GroupDescription{}), 3 - 2) << "without name and where";
   EXPECT_EQ(count(ShapeDescription{}), 5 - 2) << "without name and where";
-  EXPECT_EQ(count(SceneDescription{}), 11 - 2 + 1) << "without name and folder, with the version";
+  EXPECT_EQ(count(SceneDescription{}), 12 - 2 + 1) << "without name and folder, with the version";
 }
 
 // --- suggestions --------------------------------------------------------------------------------------------
