@@ -12,6 +12,7 @@
 #include "geometry/mesh_file.h"
 #include "renderer/builtin_scenes.h"
 #include "renderer/mesh_scene.h"
+#include "renderer/nff_reader.h"
 #include "renderer/scene_fields.h"
 #include "renderer/scene_reader.h"
 
@@ -35,7 +36,8 @@ std::vector<std::string> builtin_names() {
 [[noreturn]] void throw_unknown_scene(const std::string& name) {
   const std::vector<std::string> builtin = builtin_names();
   const std::string extension = lower_extension(name);
-  if (extension != ".json" && extension != ".obj" && extension != ".ply" && name.find('/') == std::string::npos)
+  if (extension != ".json" && extension != ".nff" && extension != ".obj" && extension != ".ply" &&
+      name.find('/') == std::string::npos)
     throw usage_error(fmt::format("scene \"{}\" is neither a file nor a built-in scene{}; built-in scenes: {}", name,
                                   did_you_mean(name, builtin), joined(builtin)));
   // A file was meant: the nearest name in its folder may be the right one.
@@ -116,9 +118,10 @@ SceneDescription read_scene_argument(const SceneFlags& flags, Warnings& warnings
   if (is_mesh_file_name(name)) return mesh_scene(name, warnings, wanted_image(flags));
   const std::string extension = lower_extension(name);
   if (extension == ".gz") throw Error(ErrorKind::bad_input, {name, 0, ""}, "is compressed; unpack it first (gunzip)");
+  if (extension == ".nff") return read_nff_file(name, warnings);
   if (!extension.empty() && extension != ".json")
     throw Error(ErrorKind::bad_input, {name, 0, ""},
-                "is no scene by its name: a scene file ends in .json, a mesh in .obj or .ply");
+                "is no scene by its name: a scene file ends in .json or .nff, a mesh in .obj or .ply");
   return read_scene_file(name);
 }
 
@@ -170,7 +173,7 @@ void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
 
 void check_scene_flags(const SceneFlags& flags) {
   if (flags.scene.empty())
-    throw usage_error("no scene: give a scene file (.json), a mesh (.obj, .ply) or a built-in scene: " +
+    throw usage_error("no scene: give a scene file (.json, .nff), a mesh (.obj, .ply) or a built-in scene: " +
                       joined(builtin_names()));
   if (!flags.size.empty()) parse_size("--size", flags.size);
   for (const std::string& text : flags.sets) parse_assignment(text);

@@ -47,11 +47,7 @@ class Tracer {
       return;
     }
     const SurfacePoint surface = surface_at(*scene_.shapes, origin, direction, hit, wants_texture_);
-    const ShapeId shape = scene_.shapes->shape_of(hit.geometry, hit.primitive, hit.instance);
-    const std::uint32_t material = hit.instance == kNoInstance
-                                       ? scene_.shape_materials[shape]
-                                       : scene_.instance_material(scene_.shapes->instances[hit.instance], shape);
-    const ShadingPoint point = shading_point(surface, direction, scene_.materials[material]);
+    const ShadingPoint point = shading_point(surface, direction, scene_.materials[scene_.material_at(hit)]);
     if (settings_.distance_attenuation > 0 && level > 1)
       weight *= segment_attenuation(static_cast<float>(settings_.distance_attenuation), surface.distance);
     sum_ += weight * scene_.ambient * point.material->ambient.at(point.surface);

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <limits>
 
+#include "geometry/embree_cones.h"
 #include "geometry/embree_packets.h"
 #include "geometry/embree_state.h"
 #include "geometry/error.h"
@@ -149,6 +150,8 @@ embree::SceneHandle scene_of(RTCDevice device, const BoundedShapes& shapes, cons
       share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, discs.center_radius, 16, discs.center_radius.size());
       share(geometry, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, discs.normal, sizeof(Vec3f), discs.normal.size());
     });
+  if (const ConeArray& cones = shapes.cones; !cones.shape.empty())
+    attach(RTC_GEOMETRY_TYPE_USER, kConeGeometry, [&](RTCGeometry geometry) { embree::set_cones(geometry, cones); });
   for (std::size_t i = 0; i < shapes.meshes.size(); ++i) {
     const TriangleMesh& mesh = shapes.meshes[i].mesh;
     if (mesh.corners.empty()) continue;
@@ -287,8 +290,8 @@ Hit EmbreeIntersector::intersect_one(const Vec3f& origin, const Vec3f& direction
   RTCRayHit ray = embree::single_ray_hit(origin, direction, nearest.distance);
   query.intersect(state_->scene.get(), ray);
   if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID)
-    nearest = {ray.hit.geomID, ray.hit.primID,   ray.hit.u,
-               ray.hit.v,      ray.ray.tfar,     instance_of(ray.hit.instID[0], state_->first_instance)};
+    nearest = {ray.hit.geomID, ray.hit.primID, ray.hit.u,
+               ray.hit.v,      ray.ray.tfar,   instance_of(ray.hit.instID[0], state_->first_instance)};
   return nearest;
 }
 

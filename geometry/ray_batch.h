@@ -50,12 +50,13 @@ class RayBatch {
   std::unique_ptr<std::byte[], detail::AlignedDelete> storage_;
 };
 
-/// Which geometry a hit lies on. Spheres, discs and planes of a scene form one geometry each; meshes follow.
+/// Which geometry a hit lies on. Spheres, discs, planes and cones of a scene form one geometry each; meshes follow.
 using GeometryId = std::uint32_t;
 inline constexpr GeometryId kSphereGeometry = 0;
 inline constexpr GeometryId kDiscGeometry = 1;
 inline constexpr GeometryId kPlaneGeometry = 2;
-inline constexpr GeometryId kFirstMeshGeometry = 3;
+inline constexpr GeometryId kConeGeometry = 3;
+inline constexpr GeometryId kFirstMeshGeometry = 4;
 inline constexpr GeometryId kNoGeometry = std::numeric_limits<GeometryId>::max();
 
 /// Which use of a group a hit lies on: an index into ShapeSet::instances. Geometry and primitive are then the group's.
@@ -64,7 +65,7 @@ inline constexpr InstanceId kNoInstance = std::numeric_limits<InstanceId>::max()
 
 struct Hit {
   GeometryId geometry = kNoGeometry;
-  std::uint32_t primitive = 0;  ///< triangle, sphere, disc or plane of the geometry
+  std::uint32_t primitive = 0;  ///< triangle, sphere, disc, plane or cone of the geometry
   float u = 0, v = 0;           ///< triangles: weights of corner 1 and corner 2; slightly outside [0, 1] at edges
   float distance = 0;
   InstanceId instance = kNoInstance;
@@ -91,9 +92,7 @@ class HitBatch {
     has_instances_ = false;
   }
 
-  Hit operator[](std::size_t i) const {
-    return {geometry[i], primitive[i], u[i], v[i], distance[i], instance[i]};
-  }
+  Hit operator[](std::size_t i) const { return {geometry[i], primitive[i], u[i], v[i], distance[i], instance[i]}; }
   void set(std::size_t i, const Hit& hit) {
     geometry[i] = hit.geometry, primitive[i] = hit.primitive, u[i] = hit.u, v[i] = hit.v, distance[i] = hit.distance;
     instance[i] = hit.instance;

@@ -11,11 +11,13 @@ std::size_t bytes(const Array& array) {
 
 std::size_t bounded_bytes(const BoundedShapes& shapes) {
   std::size_t sum = bytes(shapes.spheres.center_radius) + bytes(shapes.spheres.shape) +
-                    bytes(shapes.discs.center_radius) + bytes(shapes.discs.normal) + bytes(shapes.discs.shape);
+                    bytes(shapes.discs.center_radius) + bytes(shapes.discs.normal) + bytes(shapes.discs.shape) +
+                    bytes(shapes.cones.base_radius) + bytes(shapes.cones.apex_radius) + bytes(shapes.cones.shape);
   for (const MeshEntry& entry : shapes.meshes) {
     const TriangleMesh& mesh = entry.mesh;
     sum += bytes(mesh.positions) + bytes(mesh.corners) + bytes(mesh.normals) + bytes(mesh.normal_corners) +
-           bytes(mesh.texture_coordinates) + bytes(mesh.texture_corners) + bytes(mesh.triangle_faces);
+           bytes(mesh.texture_coordinates) + bytes(mesh.texture_corners) + bytes(mesh.triangle_faces) +
+           bytes(entry.triangle_tags);
   }
   return sum;
 }

@@ -1,6 +1,6 @@
 // The shapes of a scene in tracing form, all in scene space: world space less `origin`, so that a scene far from the
-// world's origin loses nothing to float. Spheres, discs and planes stand in one array each. Groups hold shapes in a space
-// of their own and are used, as often as one likes, through instances.
+// world's origin loses nothing to float. Spheres, discs, cones and planes stand in one array each. Groups hold shapes
+// in a space of their own and are used, as often as one likes, through instances.
 #pragma once
 
 #include <Imath/ImathVec.h>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/buffer.h"
+#include "geometry/cone.h"
 #include "geometry/ray_batch.h"
 #include "geometry/triangle_mesh.h"
 #include "geometry/vec.h"
@@ -30,29 +31,55 @@ struct DiscArray {
   Buffer<ShapeId> shape;
 };
 
+/// Lateral surfaces of cut-off cones and of cylinders; see cone.h.
+struct ConeArray {
+  Buffer<Imath::V4f> base_radius;  ///< [cone_count] center and radius of one end
+  Buffer<Imath::V4f> apex_radius;  ///< [cone_count] of the other
+  Buffer<ShapeId> shape;
+
+  Cone operator[](std::size_t i) const {
+    const Imath::V4f &b = base_radius[i], &a = apex_radius[i];
+    return {{b.x, b.y, b.z}, {a.x, a.y, a.z}, b.w, a.w};
+  }
+};
+
 struct Plane {
   Vec3d point;   ///< scene space
   Vec3d normal;  ///< unit
   ShapeId shape = 0;
 };
 
+inline constexpr std::uint32_t kNoTag = 0xffffffffu;
+
 struct MeshEntry {
   TriangleMesh mesh;  ///< positions in scene space: mesh.origin is zero
   ShapeId shape = 0;
+  /// [triangle_count] what whoever filled the set wants to find again at a hit, kNoTag for nothing; empty: no triangle
+  /// has a tag. Tracers do not look at it.
+  Buffer<std::uint32_t> triangle_tags = {};
 };
 
 /// What lies within bounds.
 struct BoundedShapes {
   SphereArray spheres;            ///< kSphereGeometry
   DiscArray discs;                ///< kDiscGeometry
+  ConeArray cones;                ///< kConeGeometry
   std::vector<MeshEntry> meshes;  ///< kFirstMeshGeometry + index
 
-  bool empty() const { return spheres.shape.empty() && discs.shape.empty() && meshes.empty(); }
+  bool empty() const { return spheres.shape.empty() && discs.shape.empty() && cones.shape.empty() && meshes.empty(); }
 
   /// Shape that a hit on anything but a plane lies on.
   ShapeId bounded_shape_of(GeometryId geometry, std::uint32_t primitive) const {
     if (geometry >= kFirstMeshGeometry) return meshes[geometry - kFirstMeshGeometry].shape;
-    return geometry == kSphereGeometry ? spheres.shape[primitive] : discs.shape[primitive];
+    if (geometry == kSphereGeometry) return spheres.shape[primitive];
+    return geometry == kDiscGeometry ? discs.shape[primitive] : cones.shape[primitive];
+  }
+
+  /// The tag of a triangle that was hit; kNoTag for all else.
+  std::uint32_t tag_of(GeometryId geometry, std::uint32_t primitive) const {
+    if (geometry < kFirstMeshGeometry) return kNoTag;
+    const Buffer<std::uint32_t>& tags = meshes[geometry - kFirstMeshGeometry].triangle_tags;
+    return tags.empty() ? kNoTag : tags[primitive];
   }
 };
 

@@ -112,6 +112,34 @@ inline void disc_surface(const BoundedShapes& shapes, const Vec3f& origin, const
   flat_surface(Vec3d(disc.x, disc.y, disc.z), Vec3d(shapes.discs.normal[hit.primitive]), origin, direction, hit, point);
 }
 
+/// As the sphere's: the intersector says which cone and which of its sides; where exactly is solved again in double.
+inline void cone_surface(const Cone& cone, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
+                         SurfacePoint& point) {
+  const ConeFrame frame(cone);
+  const Vec3d o(origin), d = unit(Vec3d(direction));
+  const ConeCrossings crossings = cone_crossings(frame, o, d);
+  double distance = std::abs(crossings.near - hit.distance) <= std::abs(crossings.far - hit.distance) ? crossings.near
+                                                                                                      : crossings.far;
+  // At a rim or a grazing ray the two solutions may disagree about whether there is a crossing at all.
+  if (!std::isfinite(distance)) distance = hit.distance;
+  Vec3d position = o + d * distance;
+  const Vec3d normal = cone_normal(frame, position);
+  // Onto the surface, along the radius: what the ray's own length takes from the digits comes back.
+  const Vec3d from_base = position - frame.base;
+  const double height = from_base.dot(frame.axis);
+  const Vec3d across = from_base - frame.axis * height;
+  if (const double off_axis = across.length(); off_axis > 0)
+    position += across * ((frame.base_radius + frame.slope * height) / off_axis - 1);
+  point.position = Vec3f(position);
+  point.geometric_normal = point.shading_normal = Vec3f(normal);
+  const Bounds3d box = bounds(cone);
+  const auto largest = [&](int axis) {
+    return static_cast<float>(std::max(std::abs(box.min[axis]), std::abs(box.max[axis])));
+  };
+  point.clearance = kSurfaceError * std::max(largest(0), std::max(largest(1), largest(2)));
+  point.distance = static_cast<float>(std::max(0.0, distance));
+}
+
 inline void plane_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const Hit& hit,
                           SurfacePoint& point) {
   const Plane& plane = shapes.planes[hit.primitive];
@@ -184,6 +212,8 @@ inline void find_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec3
     detail::sphere_surface(shapes, origin, direction, hit, point);
   else if (hit.geometry == kDiscGeometry)
     detail::disc_surface(shapes, origin, direction, hit, point);
+  else if (hit.geometry == kConeGeometry)
+    detail::cone_surface(shapes.cones[hit.primitive], origin, direction, hit, point);
   else
     detail::plane_surface(shapes, origin, direction, hit, point);
 }

@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "geometry/mesh_file.h"
+#include "renderer/mesh_materials.h"
 
 namespace raytree {
 namespace {
@@ -186,8 +187,12 @@ SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string
   const double gap = box.size().y < 1e-3 * diagonal ? 2e-3 * diagonal : 1e-6 * diagonal;
   ShapeDescription object;
   object.name = "object";
-  object.material = clay.name;
   MeshShape shape;
+  // A file's own materials count where its libraries are there; faces without one are clay in any case.
+  if (has_material_library(*mesh, name))
+    shape.file = name;
+  else
+    object.material = clay.name;
   shape.crease_angle = 60;
   shape.mesh = std::move(mesh);
   object.kind = std::move(shape);

@@ -207,18 +207,15 @@ void SampleTracer::State::collect_hits(bool eye) {
     const PendingRay& ray = contexts[i];
     const Hit hit = hits[i];
     BatchPoint& point = points[p];
-    std::uint32_t object, material_index;
+    std::uint32_t object;
     if (kFeatures.instances && instanced && hit.instance != kNoInstance) {
-      const Instance& instance = shapes.instances[hit.instance];
-      object = instance.object;
-      material_index =
-          scene.instance_material(instance, shapes.shape_of(hit.geometry, hit.primitive, hit.instance));
+      object = shapes.instances[hit.instance].object;
       find_instance_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     } else {
       object = shapes.shape_of(hit.geometry, hit.primitive);
-      material_index = scene.shape_materials[object];
       find_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     }
+    const std::uint32_t material_index = scene.material_at(hit);
     const Material& material = scene.materials[material_index];
     complete_shading_point(point.shading, ray.direction, material);
     point.weight = ray.weight;

@@ -55,11 +55,26 @@ void resolve_materials(const SceneDescription& scene, const Vec3d& origin, Scene
     for (const ShapeDescription& shape : group.shapes) resolve(shape);
 }
 
+/// Indices into the scene's materials of those that shapes and mesh files name.
+std::set<std::uint32_t> materials_in_use(const Scene& scene) {
+  std::set<std::uint32_t> used(scene.shape_materials.begin(), scene.shape_materials.end());
+  used.erase(kOwnMaterials);
+  const auto& materials = scene.description.materials;
+  const auto add = [&](const std::vector<ShapeSummary>& shapes) {
+    for (const ShapeSummary& shape : shapes)
+      for (const std::string& name : shape.file_materials)
+        for (std::size_t i = 0; i < materials.size(); ++i)
+          if (materials[i].name == name) used.insert(static_cast<std::uint32_t>(i));
+  };
+  add(scene.summary.shapes);
+  for (const GroupSummary& group : scene.summary.groups) add(group.shapes);
+  return used;
+}
+
 std::vector<std::string> features_in_use(const Scene& scene) {
   std::set<std::string> features;
   const RenderSettings& render = scene.description.render;
-  for (const std::uint32_t index : scene.shape_materials) {
-    if (index == kOwnMaterials) continue;
+  for (const std::uint32_t index : materials_in_use(scene)) {
     const Material& material = scene.materials[index];
     if (material.has_reflection) features.insert("reflection");
     if (material.has_transmission) features.insert("refraction");
@@ -87,6 +102,7 @@ std::vector<std::string> features_in_use(const Scene& scene) {
     if (!list.meshes.empty()) features.insert("triangle BVH");
     if (!list.spheres.shape.empty()) features.insert("sphere BVH");
     if (!list.discs.shape.empty()) features.insert("disc BVH");
+    if (!list.cones.shape.empty()) features.insert("cone BVH");
   };
   add_features_of(shapes);
   for (const BoundedShapes& group : shapes.groups) add_features_of(group);
@@ -151,7 +167,12 @@ void warn_of_open_glass(const Scene& scene, Warnings& warnings) {
   const std::vector<const ShapeDescription*> shapes = all_shapes(scene.description);
   const auto check = [&](const BoundedShapes& list) {
     for (const MeshEntry& entry : list.meshes) {
-      if (!scene.materials[scene.shape_materials[entry.shape]].has_transmission) continue;
+      const bool transmits =
+          scene.materials[scene.shape_materials[entry.shape]].has_transmission ||
+          std::any_of(entry.triangle_tags.begin(), entry.triangle_tags.end(), [&](std::uint32_t tag) {
+            return tag != kNoTag && scene.materials[tag].has_transmission && !scene.description.materials[tag].thin;
+          });
+      if (!transmits) continue;
       if (const std::int64_t open = count_open_edges(entry.mesh); open > 0)
         warnings.push_back(
             {shapes[entry.shape]->where, "a refractive mesh that is not closed has no inside: open edges", open});
@@ -224,6 +245,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   std::set<std::string> used;
   const auto use = [&](ShapeSummary& shape, const ShapeDescription& described) {
     shape.material = described.material;
+    used.insert(shape.file_materials.begin(), shape.file_materials.end());
     if (!shape.material.empty())
       used.insert(shape.material);
     else if (group_used_by(described).empty())

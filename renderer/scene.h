@@ -25,10 +25,11 @@ namespace raytree {
 /// What stands in a scene, for `info` and for statistics.
 struct ShapeSummary {
   std::string name;
-  std::string kind;  ///< "mesh", "sphere", ...
-  std::string material;
-  std::uint32_t id = 0;         ///< as in the object_id channel
-  std::uint64_t triangles = 0;  ///< handed to the intersector
+  std::string kind;                         ///< "mesh", "sphere", ...
+  std::string material;                     ///< empty: the default one, or the mesh file's
+  std::vector<std::string> file_materials;  ///< that a mesh's file names, where they serve
+  std::uint32_t id = 0;                     ///< as in the object_id channel
+  std::uint64_t triangles = 0;              ///< handed to the intersector
   std::uint64_t spheres = 0;
   std::uint64_t faces_by_size[3] = {0, 0, 0};  ///< triangles, quads, larger, as the file has them
   /// Uses of groups that shape comes to, nesting resolved. Their ids: `id` for the first, first_extra_id and following
@@ -95,13 +96,23 @@ class Scene {
   Rgb ambient;
   Camera camera;
   RadianceBound bound;
-  /// Index into materials of what a hit on an instance shows: the instance's, or else that of the group's shape.
-  std::uint32_t instance_material(const Instance& instance, ShapeId part) const {
-    const std::uint32_t own = shape_materials[instance.shape];
-    return own != kOwnMaterials ? own : shape_materials[part];
+  /// Index into materials of what a hit shows: the instance's, or else the triangle's own, or else the shape's.
+  std::uint32_t material_at(const Hit& hit) const {
+    if (hit.instance == kNoInstance) return own_material(*shapes, shapes->shape_of(hit.geometry, hit.primitive), hit);
+    const Instance& instance = shapes->instances[hit.instance];
+    const std::uint32_t all = shape_materials[instance.shape];
+    if (all != kOwnMaterials) return all;
+    const BoundedShapes& group = shapes->groups[instance.group];
+    return own_material(group, group.bounded_shape_of(hit.geometry, hit.primitive), hit);
   }
 
   SmallObjects small_objects;  ///< as the camera sees them; none unless the anti-aliasing asks for them
+
+ private:
+  std::uint32_t own_material(const BoundedShapes& list, ShapeId shape, const Hit& hit) const {
+    const std::uint32_t tag = list.tag_of(hit.geometry, hit.primitive);
+    return tag != kNoTag ? tag : shape_materials[shape];
+  }
 };
 
 /// Loads mesh files, generates and transforms shapes, builds the intersector. Throws Error; what was odd is added to

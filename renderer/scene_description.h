@@ -168,6 +168,12 @@ struct DiscShape {
   double radius = 1;
 };
 inline constexpr double kLargestScatterHeight = 1e18;
+/// The lateral surface between two circles about one axis, open at both ends: a cylinder where the radii are equal, a
+/// pointed cone where one is 0.
+struct ConeShape {
+  Vec3d base{0, 0, 0}, apex{0, 1, 0};       ///< centers of the circles; apart
+  double base_radius = 1, apex_radius = 0;  ///< not negative, not both 0
+};
 /// A fractal height field over the square [-size/2, size/2]^2 in x and z.
 struct TerrainShape {
   std::int64_t triangles = 1'000'000;  ///< up to 50 million; the count made is the nearest that a grid allows
@@ -205,13 +211,13 @@ struct ScatterShape {
   std::int64_t count = 100;  ///< at most; places that do not suit are tried again a limited number of times
   double least_scale = 0.8, largest_scale = 1.2;
   double lowest = -kLargestScatterHeight, highest = kLargestScatterHeight;  ///< world y of the places taken
-  double steepest = 35;  ///< slope, degrees
+  double steepest = 35;                                                     ///< slope, degrees
   double sink = 0.1;     ///< how deep each stands in the ground, scene units
   double clearings = 0;  ///< share of the ground that stays empty, in patches, [0, 1]
   double clearing_size = 1;
   std::uint32_t seed = 1980;
 };
-using ShapeKind = std::variant<MeshShape, SphereShape, PlaneShape, DiscShape, TerrainShape, SphereFlakeShape,
+using ShapeKind = std::variant<MeshShape, SphereShape, PlaneShape, DiscShape, ConeShape, TerrainShape, SphereFlakeShape,
                                TreeShape, InstanceShape, ScatterShape>;
 
 struct ShapeDescription {

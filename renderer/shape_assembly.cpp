@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "geometry/instance_transform.h"
@@ -17,6 +19,7 @@
 #include "geometry/triangulation.h"
 #include "geometry/vertex_normals.h"
 #include "renderer/groups.h"
+#include "renderer/mesh_materials.h"
 #include "renderer/scatter.h"
 
 namespace raytree {
@@ -82,8 +85,7 @@ double uniform_scale(const Matrix44d& m, const std::string& kind, const SourceLo
                        std::abs(x.dot(y)) <= tolerance && std::abs(x.dot(z)) <= tolerance &&
                        std::abs(y.dot(z)) <= tolerance;
   if (!uniform || !(scale > 0))
-    throw Error(ErrorKind::bad_input, where,
-                kind + " takes a transform with one scale for all axes");
+    throw Error(ErrorKind::bad_input, where, kind + " takes a transform with one scale for all axes");
   return scale;
 }
 
@@ -129,6 +131,11 @@ struct Assembly {
     ShapeId shape;
   };
   std::vector<WorldDisc> discs;
+  struct WorldCone {
+    Cone cone;
+    ShapeId shape;
+  };
+  std::vector<WorldCone> cones;
   std::vector<Plane> planes;
   struct Use {
     std::uint32_t group;
@@ -137,7 +144,7 @@ struct Assembly {
   };
   std::vector<Use> uses;  ///< of groups; those of one shape stand together
 
-  bool has_round() const { return !spheres.empty() || !flakes.empty() || !discs.empty(); }
+  bool has_round() const { return !spheres.empty() || !flakes.empty() || !discs.empty() || !cones.empty(); }
   bool has_shapes() const { return has_round() || !meshes.empty(); }
 };
 
@@ -164,8 +171,9 @@ void apply_normal_source(PolygonMesh& mesh, const MeshShape& shape, const Source
 /// Fills the assembly of one list of shapes.
 class Assembler {
  public:
-  Assembler(const SceneDescription& scene, const PrepareOptions& options, Warnings& warnings)
-      : scene_(scene), options_(options), warnings_(warnings) {}
+  Assembler(const SceneDescription& scene, MeshMaterials& mesh_materials, const PrepareOptions& options,
+            Warnings& warnings)
+      : scene_(scene), mesh_materials_(mesh_materials), options_(options), warnings_(warnings) {}
 
   Assembly assembly;
 
@@ -207,8 +215,8 @@ class Assembler {
   void add_kind(MeshShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "mesh";
     std::shared_ptr<PolygonMesh> mesh = std::move(kind.mesh);
+    const std::filesystem::path path = std::filesystem::path(scene_.folder) / kind.file;
     if (!mesh) {
-      const std::filesystem::path path = std::filesystem::path(scene_.folder) / kind.file;
       begin_phase("reading " + kind.file);
       try {
         mesh = std::make_shared<PolygonMesh>(read_mesh_file(path.string(), warnings_));
@@ -221,7 +229,35 @@ class Assembler {
     begin_phase("preparing " + shape.name);
     count_faces(*mesh, summary);
     apply_normal_source(*mesh, kind, shape.where, warnings_);
+    std::vector<std::optional<std::uint32_t>> group_materials;
+    if (shape.material.empty()) group_materials = mesh_materials_.of_groups(*mesh, path.string());
+    const std::vector<FaceGroup> groups = std::move(mesh->groups);
     add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
+    tag_materials(groups, group_materials, assembly.meshes.back(), summary);
+  }
+
+  /// Gives each triangle the material of its face's group.
+  void tag_materials(const std::vector<FaceGroup>& groups,
+                     const std::vector<std::optional<std::uint32_t>>& group_materials, MeshEntry& entry,
+                     ShapeSummary& summary) const {
+    std::set<std::uint32_t> used;
+    for (const std::optional<std::uint32_t>& material : group_materials)
+      if (material) used.insert(*material);
+    if (used.empty()) return;
+    for (const std::uint32_t material : used) summary.file_materials.push_back(scene_.materials[material].name);
+    const TriangleMesh& mesh = entry.mesh;
+    entry.triangle_tags.assign(mesh.triangle_count(), kNoTag);
+    std::size_t triangle = 0;
+    const auto face_of = [&](std::size_t i) {
+      return mesh.triangle_faces.empty() ? static_cast<std::uint32_t>(i) : mesh.triangle_faces[i];
+    };
+    // Groups are runs of faces in order, and triangles are in the order of their faces.
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      while (triangle < mesh.triangle_count() && face_of(triangle) < groups[g].first_face) ++triangle;
+      const std::uint64_t end = std::uint64_t(groups[g].first_face) + groups[g].face_count;
+      for (; triangle < mesh.triangle_count() && face_of(triangle) < end; ++triangle)
+        if (group_materials[g]) entry.triangle_tags[triangle] = *group_materials[g];
+    }
   }
 
   void add_kind(TerrainShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
@@ -280,6 +316,18 @@ class Assembler {
     assembly.discs.push_back({center, normal, radius, id});
   }
 
+  void add_kind(ConeShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "cone";
+    const double scale = uniform_scale(shape.transform, "a cone", shape.where);
+    const Cone cone{transformed_point(kind.base, shape.transform), transformed_point(kind.apex, shape.transform),
+                    kind.base_radius * scale, kind.apex_radius * scale};
+    require(cone.base_radius >= 0 && cone.apex_radius >= 0 && cone.base_radius + cone.apex_radius > 0,
+            "a cone needs radii that are not negative, and one that is larger than 0", shape.where);
+    require((cone.apex - cone.base).length() > 0, "a cone's base and apex must lie apart", shape.where);
+    summary.bounds = bounds(cone);
+    assembly.cones.push_back({cone, id});
+  }
+
   void add_kind(TreeShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "tree";
     begin_phase("growing " + shape.name);
@@ -319,6 +367,7 @@ class Assembler {
   const std::vector<ShapeDescription>* list_ = nullptr;  ///< under way
   ShapeId first_ = 0;
   const SceneDescription& scene_;
+  MeshMaterials& mesh_materials_;
   const PrepareOptions& options_;
   Warnings& warnings_;
 };
@@ -365,14 +414,20 @@ void move_to_space(Assembly& assembly, const Vec3d& origin, BoundedShapes& shape
     shapes.discs.normal.push_back(Vec3f(disc.normal));
     shapes.discs.shape.push_back(disc.shape);
   }
+  for (const auto& [cone, shape] : assembly.cones) {
+    const Vec3f base(cone.base - origin), apex(cone.apex - origin);
+    shapes.cones.base_radius.push_back({base.x, base.y, base.z, static_cast<float>(cone.base_radius)});
+    shapes.cones.apex_radius.push_back({apex.x, apex.y, apex.z, static_cast<float>(cone.apex_radius)});
+    shapes.cones.shape.push_back(shape);
+  }
 }
 
 Bounds3d transformed_bounds(const Bounds3d& box, const Matrix44d& m) {
   Bounds3d result;
   for (int corner = 0; corner < 8; ++corner)
-    result.extendBy(transformed_point({corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                       corner & 4 ? box.max.z : box.min.z},
-                                      m));
+    result.extendBy(transformed_point(
+        {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y, corner & 4 ? box.max.z : box.min.z},
+        m));
   return result;
 }
 
@@ -390,8 +445,13 @@ struct GroupAssembly {
 /// The groups that shapes use, directly or through others, assembled; and their uses, nesting resolved.
 class GroupAssembler {
  public:
-  GroupAssembler(SceneDescription& description, const PrepareOptions& options, Warnings& warnings)
-      : description_(description), options_(options), warnings_(warnings), groups_(description.groups.size()) {
+  GroupAssembler(SceneDescription& description, MeshMaterials& mesh_materials, const PrepareOptions& options,
+                 Warnings& warnings)
+      : description_(description),
+        mesh_materials_(mesh_materials),
+        options_(options),
+        warnings_(warnings),
+        groups_(description.groups.size()) {
     ShapeId first = static_cast<ShapeId>(description.shapes.size());
     for (const GroupDescription& group : description.groups) {
       first_shapes_.push_back(first);
@@ -437,7 +497,7 @@ class GroupAssembler {
   void assemble(std::uint32_t index) {
     done_[index] = true;
     GroupAssembly& group = groups_[index];
-    Assembler assembler(description_, options_, warnings_);
+    Assembler assembler(description_, mesh_materials_, options_, warnings_);
     std::vector<ShapeSummary>& shapes = summaries_[index].shapes;
     assembler.add_all(description_.groups[index].shapes, first_shapes_[index], shapes);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -467,6 +527,7 @@ class GroupAssembler {
   }
 
   SceneDescription& description_;
+  MeshMaterials& mesh_materials_;
   const PrepareOptions& options_;
   Warnings& warnings_;
   std::vector<GroupAssembly> groups_;
@@ -491,10 +552,9 @@ Instance make_instance(const Matrix44d& transform, const GroupAssembly& group, c
   // NaN fails the comparisons.
   if (!(determinant >= kLeastDeterminant && determinant <= kMostDeterminant))
     refuse("scales", "by less than 1e-10 or more than 1e10");
-  if (!(single.cancellation() <= kMostCancellation))
-    refuse("flattens", "so much that single precision cannot undo it");
+  if (!(single.cancellation() <= kMostCancellation)) refuse("flattens", "so much that single precision cannot undo it");
   if (group.has_round)
-    uniform_scale(transform, "an instance of the group \"" + group_name + "\", which holds spheres or discs,",
+    uniform_scale(transform, "an instance of the group \"" + group_name + "\", which holds spheres, discs or cones,",
                   where);
   return instance;
 }
@@ -552,13 +612,14 @@ ShapeSet assemble_shapes(SceneDescription& description, const Vec3d& eye, const 
   check_groups(description, [](const GroupDescription*, const ShapeDescription& shape, const std::string& message) {
     throw Error(ErrorKind::bad_input, shape.where, message);
   });
-  Assembler assembler(description, options, warnings);
+  MeshMaterials mesh_materials(description, warnings);
+  Assembler assembler(description, mesh_materials, options, warnings);
   Assembly& assembly = assembler.assembly;
   assembler.add_all(description.shapes, 0, summary.shapes);
   // Uses in the order of the shapes, whichever kind came first.
   std::stable_sort(assembly.uses.begin(), assembly.uses.end(),
                    [](const Assembly::Use& a, const Assembly::Use& b) { return a.shape < b.shape; });
-  GroupAssembler groups(description, options, warnings);
+  GroupAssembler groups(description, mesh_materials, options, warnings);
   groups.assemble(assembly.uses);
   bound_instances(assembly, groups, description, summary);
   for (const ShapeSummary& shape : summary.shapes)

@@ -63,6 +63,12 @@ class OutlineBuilder {
     return add_circle(center - to_center * nearer, unit(to_center), radius * std::sqrt(1 - nearer));
   }
 
+  /// Its outline is the hull of its two ends.
+  bool add_cone(const Cone& cone) {
+    const Vec3d axis = (cone.apex - cone.base).normalized();
+    return add_circle(cone.base, axis, cone.base_radius) && add_circle(cone.apex, axis, cone.apex_radius);
+  }
+
   std::optional<SmallObject> finish(ShapeId shape) {
     SmallObject object;
     object.outline = convex_hull(points_);
@@ -90,7 +96,8 @@ class GroupOutline {
 
   /// Spheres and discs one by one where they are few and alone; their outlines are then exact.
   bool is_few_rounds() const {
-    return group_.meshes.empty() && group_.spheres.shape.size() + group_.discs.shape.size() <= kFewRounds;
+    return group_.meshes.empty() &&
+           group_.spheres.shape.size() + group_.discs.shape.size() + group_.cones.shape.size() <= kFewRounds;
   }
 
   /// The farthest points of the group in directions all around. Their hull lies inside the group's own; of a sphere it
@@ -120,6 +127,12 @@ class GroupOutline {
   void for_each_point(Function&& function) const {
     for (const Imath::V4f& s : group_.spheres.center_radius) function(Vec3d(s.x, s.y, s.z), double(s.w));
     for (const Imath::V4f& d : group_.discs.center_radius) function(Vec3d(d.x, d.y, d.z), double(d.w));
+    for (std::size_t i = 0; i < group_.cones.shape.size(); ++i) {
+      // A ball about each end holds that end's circle.
+      const Cone cone = group_.cones[i];
+      function(cone.base, cone.base_radius);
+      function(cone.apex, cone.apex_radius);
+    }
     for (const MeshEntry& entry : group_.meshes)
       for (const Vec3f& position : entry.mesh.positions) function(Vec3d(position), 0.0);
   }
@@ -141,6 +154,12 @@ std::optional<SmallObject> instance_outline(const BoundedShapes& group, GroupOut
       const Imath::V4f& d = group.discs.center_radius[i];
       const Vec3d normal = unit(transform.normal(Vec3d(group.discs.normal[i])));
       if (!outline.add_circle(transform.point({d.x, d.y, d.z}), normal, d.w * scale)) return std::nullopt;
+    }
+    for (std::size_t i = 0; i < group.cones.shape.size(); ++i) {
+      const Cone inside = group.cones[i];
+      if (!outline.add_cone({transform.point(inside.base), transform.point(inside.apex), inside.base_radius * scale,
+                             inside.apex_radius * scale}))
+        return std::nullopt;
     }
     return outline.finish(instance.object);
   }
@@ -253,6 +272,10 @@ SmallObjects::SmallObjects(const ShapeSet& shapes, const Camera& camera, int wid
     OutlineBuilder outline(camera);
     if (outline.add_circle(Vec3d(disc.x, disc.y, disc.z), Vec3d(shapes.discs.normal[i]), disc.w))
       keep(outline.finish(shapes.discs.shape[i]));
+  }
+  for (std::size_t i = 0; i < shapes.cones.shape.size(); ++i) {
+    OutlineBuilder outline(camera);
+    if (outline.add_cone(shapes.cones[i])) keep(outline.finish(shapes.cones.shape[i]));
   }
   for (const MeshEntry& entry : shapes.meshes) {
     OutlineBuilder outline(camera);

@@ -203,6 +203,18 @@ TEST(ObjReader, ErrorsNameFileAndLine) {
   EXPECT_NE(error_of(std::string("\xff\xfev\0 \0", 6)).find("UTF-16"), std::string::npos);
 }
 
+TEST(ObjReader, LibrariesAreNamedOnceInFileOrder) {
+  Warnings warnings;
+  std::string text = "mtllib b.mtl\nmtllib  a b.mtl c.mtl \r\nmtllib b.mtl\n" + kThree;
+  EXPECT_EQ(read(text + "f 1 2 3\n", &warnings).material_libraries,
+            (std::vector<std::string>{"b.mtl", "a b.mtl c.mtl"}));
+  EXPECT_TRUE(warnings.empty());
+  for (int i = 0; i < 300; ++i) text += "mtllib " + std::to_string(i) + "\n";
+  EXPECT_EQ(read(text + "f 1 2 3\n", &warnings).material_libraries.size(), 256u);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].message.find("beyond the first 256"), std::string::npos);
+}
+
 TEST(ObjReader, TheFirstErrorInTheFileIsReported) {
   // Far more text than one chunk: every chunk has an error of its own.
   std::string text;
@@ -225,7 +237,8 @@ TEST(ObjReader, OddButValidFilesLoadWithCountedWarnings) {
         return std::to_string(w.where.line) + " x" + std::to_string(w.count);
     return std::string("none");
   };
-  EXPECT_EQ(find("material libraries"), "1 x1");
+  EXPECT_EQ(find("material libraries"), "none");
+  EXPECT_EQ(mesh.material_libraries, std::vector<std::string>{"a.mtl"});
   EXPECT_EQ(find("lines and points"), "8 x2");
   EXPECT_EQ(find("the first is 'foo'"), "10 x2");
   EXPECT_EQ(find("free-form"), "12 x1");

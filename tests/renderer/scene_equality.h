@@ -86,6 +86,10 @@ inline bool equal(const PlaneShape& a, const PlaneShape& b) {
   const auto& [point, normal] = a;
   return point == b.point && normal == b.normal;
 }
+inline bool equal(const ConeShape& a, const ConeShape& b) {
+  const auto& [base, apex, base_radius, apex_radius] = a;
+  return base == b.base && apex == b.apex && base_radius == b.base_radius && apex_radius == b.apex_radius;
+}
 inline bool equal(const DiscShape& a, const DiscShape& b) {
   const auto& [center, normal, radius] = a;
   return center == b.center && normal == b.normal && radius == b.radius;

@@ -692,6 +692,7 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(SphereShape{}), 2);
   EXPECT_EQ(count(PlaneShape{}), 2);
   EXPECT_EQ(count(DiscShape{}), 3);
+  EXPECT_EQ(count(ConeShape{}), 4);
   EXPECT_EQ(count(TerrainShape{}), 5);
   EXPECT_EQ(count(SphereFlakeShape{}), 3);
   EXPECT_EQ(count(TreeShape{}), 6);

@@ -180,6 +180,45 @@ TEST(SelfIntersection, NoRayHitsTheSphereItLeftButForItsFarSide) {
   }
 }
 
+TEST(SelfIntersection, NoRayHitsTheConeItLeft) {
+  Random random(6);
+  for (const Setting& setting : kSettings) {
+    if (setting.size < 1e-5 * setting.place) continue;
+    const int n = 1500;
+    ShapeSet shapes;
+    std::vector<Vec3d> on_surface;
+    for (int i = 0; i < n; ++i) {
+      const Vec3f base(random.in_cube(setting.place + 30 * setting.size));
+      const Vec3f apex(Vec3d(base) + random.direction() * (setting.size * random.uniform(0.2, 1)));
+      const auto radius = [&] { return static_cast<float>(setting.size * random.uniform(0.2, 1)); };
+      const float base_radius = radius();
+      shapes.cones.base_radius.push_back({base.x, base.y, base.z, base_radius});
+      shapes.cones.apex_radius.push_back({apex.x, apex.y, apex.z, i % 3 == 0 ? base_radius : radius()});
+      shapes.cones.shape.push_back(0);
+      const ConeFrame frame(shapes.cones[static_cast<std::size_t>(i)]);
+      const double height = frame.length * random.uniform(0.02, 0.98);
+      const Vec3d d = random.direction();
+      on_surface.push_back(frame.base + frame.axis * height +
+                           unit(d - frame.axis * d.dot(frame.axis)) * (frame.base_radius + frame.slope * height));
+    }
+    const Count count = count_false_hits(
+        shapes, n, kConeGeometry, setting.size, random, [&](int i) { return on_surface[static_cast<std::size_t>(i)]; },
+        [&](const Hit& hit, const SurfacePoint& point, const Vec3f& direction, float side) {
+          // No ray that leaves the outside comes back; from inside, a ball of the smaller radius rolls freely along the
+          // wall, so the way to the other side is at least that ball's chord.
+          if (side > 0) return true;
+          const Cone cone = shapes.cones[hit.primitive];
+          const double chord = 2 * std::abs(Vec3d(direction).dot(Vec3d(point.geometric_normal))) *
+                               std::min(cone.base_radius, cone.apex_radius);
+          return hit.distance < chord / 2 && chord > 4 * point.clearance;
+        });
+    EXPECT_EQ(count.false_hits, 0) << "size " << setting.size << " place " << setting.place << " of " << count.left;
+    if (setting.size > 1e-4 * setting.place) {
+      EXPECT_GT(count.left, 10000);
+    }
+  }
+}
+
 TEST(SelfIntersection, NoRayHitsTheDiscItLeft) {
   Random random(4);
   for (const Setting& setting : kSettings)
@@ -332,8 +371,7 @@ Count instance_false_hits(const Setting& setting, Primitive primitive, bool leve
             ++count.left;
             if (hits.geometry[k] == kNoGeometry || hits.instance[k] != hit.instance) continue;
             if (primitive == Primitive::sphere && side < 0) {
-              const double chord =
-                  std::abs(Vec3d(rays.direction(k)).dot(Vec3d(point.geometric_normal))) * setting.size;
+              const double chord = std::abs(Vec3d(rays.direction(k)).dot(Vec3d(point.geometric_normal))) * setting.size;
               if (hits.distance[k] >= chord / 2 || chord <= 4 * point.clearance) continue;
             }
             ++count.false_hits;
@@ -353,8 +391,7 @@ TEST(SelfIntersection, NoRayHitsTheInstanceItLeft) {
       for (const bool level : {false, true}) {
         const Count count = instance_false_hits(setting, primitive, level, random);
         EXPECT_EQ(count.false_hits, 0) << "primitive " << static_cast<int>(primitive) << " size " << setting.size
-                                       << " place " << setting.place << " of " << count.left
-                                       << (level ? " level" : "");
+                                       << " place " << setting.place << " of " << count.left << (level ? " level" : "");
         EXPECT_GT(count.left, 3000) << "primitive " << static_cast<int>(primitive) << " size " << setting.size
                                     << " place " << setting.place;
       }
