@@ -30,12 +30,20 @@ const CameraDescription& chosen_camera(const SceneDescription& scene, const std:
   throw Error(ErrorKind::bad_input, {scene.name, 0, "cameras"}, "no camera \"" + name + "\"; cameras: " + choices);
 }
 
+SourceLocation place_of(const SceneDescription& scene, const MaterialDescription& material) {
+  return {scene.name, 0, "materials." + material.name};
+}
+
 /// Materials in the description's order, then the default one where some shape names none.
 void resolve_materials(const SceneDescription& scene, const Vec3d& origin, Scene& result) {
   const auto make = [&](const MaterialDescription& description) {
     result.materials.push_back(make_material(description, description.fresnel.value_or(scene.render.fresnel), origin));
   };
-  for (const MaterialDescription& material : scene.materials) make(material);
+  for (const MaterialDescription& material : scene.materials) {
+    if (const std::string problem = material_problem(material); !problem.empty())
+      throw Error(ErrorKind::bad_input, place_of(scene, material), problem);
+    make(material);
+  }
   const auto fallback = static_cast<std::uint32_t>(scene.materials.size());
   for (const ShapeDescription& shape : scene.shapes) {
     const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
@@ -60,7 +68,13 @@ std::vector<std::string> features_in_use(const Scene& scene) {
     if (material.fresnel && (material.has_reflection || material.has_transmission)) features.insert("fresnel");
     if (material.diffuse.varies || material.ambient.varies) features.insert("checker patterns");
     if (material.needs_texture) features.insert("texture coordinates");
+    if (material.tabled_highlight) features.insert("highlights by angle");
+    if (material.conductor) features.insert("conductors");
+    if (material.thin) features.insert("thin sheets");
+    if (material.absorbs) features.insert("absorption");
   }
+  if (scene.transparent_shadows && !scene.lights.empty()) features.insert("transparent shadows");
+  if (scene.tracks_media) features.insert("media by priority");
   if (render.shadows && !scene.lights.empty()) features.insert("shadows");
   for (const Light& light : scene.lights) {
     if (light.falloff != Falloff::none) features.insert("light falloff");
@@ -127,10 +141,32 @@ void check_light(const LightDescription& light, const SourceLocation& where) {
 
 void warn_of_open_glass(const Scene& scene, Warnings& warnings) {
   for (const MeshEntry& entry : scene.shapes->meshes) {
-    if (!scene.materials[scene.shape_materials[entry.shape]].has_transmission) continue;
+    if (!scene.materials[scene.shape_materials[entry.shape]].has_inside) continue;
     if (const std::int64_t open = count_open_edges(entry.mesh); open > 0)
       warnings.push_back({scene.description.shapes[entry.shape].where,
                           "a refractive mesh that is not closed has no inside: open edges", open});
+  }
+}
+
+/// Where k_s + k_t exceeds 1, levels of the tree add light to light, and the bound that the cutoff rests on grows.
+void warn_of_more_light_than_arrives(const Scene& scene, Warnings& warnings) {
+  const std::vector<MaterialDescription>& described = scene.description.materials;
+  std::vector<bool> used(scene.materials.size());
+  for (const std::uint32_t index : scene.shape_materials) used[index] = true;
+  for (std::size_t i = 0; i < described.size(); ++i) {
+    if (!used[i]) continue;
+    const Material& material = scene.materials[i];
+    // The largest that float makes of parts that add up to 1 as written.
+    constexpr float kOne = 1 + 4 * 0x1p-24f;
+    if (material.fresnel || material.conductor) {
+      if (max_channel(max(material.reflection, material.transmission)) > kOne)
+        warnings.push_back({place_of(scene.description, described[i]),
+                            "returns more light than arrives: reflection or transmission exceeds 1"});
+    } else if (max_channel(material.reflection + material.transmission) > kOne) {
+      warnings.push_back({place_of(scene.description, described[i]),
+                          "returns more light than arrives: reflection + transmission exceed 1; Fresnel's weights would "
+                          "not (\"fresnel\": true)"});
+    }
   }
 }
 
@@ -181,6 +217,13 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   scene.bound =
       RadianceBound(scene.materials, scene.lights, scene.background, scene.ambient, scene.description.render.depth);
 
+  for (const std::uint32_t index : scene.shape_materials) {
+    const Material& material = scene.materials[index];
+    const RenderSettings& render = scene.description.render;
+    scene.transparent_shadows |= render.shadows && render.transparent_shadows && material.has_transmission;
+    scene.tracks_media |= material.has_inside && material.priority != 0;
+  }
+
   if (scene.description.render.antialias.method == Antialiasing::Method::whitted)
     scene.small_objects =
         SmallObjects(*scene.shapes, scene.camera, scene.description.image.width, scene.description.image.height);
@@ -195,6 +238,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   scene.summary.features = features_in_use(scene);
   scene.summary.intersector_bytes = estimated_intersector_bytes(scene.summary);
   warn_of_open_glass(scene, warnings);
+  warn_of_more_light_than_arrives(scene, warnings);
   scene.seconds.load = seconds_since(start);
   if (!options.build) return scene;
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "renderer/material.h"
 #include "renderer/suggestion.h"
 
 namespace raytree::reading {
@@ -25,6 +26,10 @@ void check(const Place& at, std::int64_t line, const CameraDescription& camera) 
   constexpr double kLeastSine = 1e-9;
   const Vec3d a = sight.normalized(), b = camera.up.normalized();
   if (a.cross(b).length() < kLeastSine) at.fail(line, "up points along the line of sight; give another direction");
+}
+
+void check(const Place& at, std::int64_t line, const MaterialDescription& material) {
+  if (const std::string problem = material_problem(material); !problem.empty()) at.fail(line, problem);
 }
 
 void check_references(const Place& root, const SceneDescription& scene) {

@@ -12,6 +12,7 @@ namespace raytree::reading {
 void check(const Place&, std::int64_t, const auto&) {}
 void check(const Place& at, std::int64_t line, const ImageDescription& image);
 void check(const Place& at, std::int64_t line, const CameraDescription& camera);
+void check(const Place& at, std::int64_t line, const MaterialDescription& material);
 
 /// Materials that shapes name must exist.
 void check_references(const Place& root, const SceneDescription& scene);

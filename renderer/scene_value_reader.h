@@ -99,6 +99,14 @@ inline void read(const Place& at, const Field& field, JsonValue value, SceneVers
                               std::to_string(kSceneVersion));
 }
 
+inline void read(const Place& at, const Field&, JsonValue value, MaterialBase& out) {
+  const std::string name(value.kind() == JsonKind::string ? value.string() : std::string_view());
+  if (builtin_material(name) == nullptr)
+    at.fail(value.line(), "unknown material " + description_of(value) + "; " +
+                              choices_text("built-in materials", name, builtin_material_names()));
+  out.name = name;
+}
+
 template <class E>
 requires std::is_enum_v<E>
 void read(const Place& at, const Field&, JsonValue value, E& out) {
