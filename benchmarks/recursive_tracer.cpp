@@ -88,8 +88,7 @@ class Tracer {
     sum_ += weight * scene_.ambient * material.ambient.at(point.surface);
     if (material.has_diffuse || material.has_highlight)
       for (const Light& light : scene_.lights) add_light(point, light, weight, boundary.before);
-    if (material.has_reflection || material.has_transmission)
-      branch(point, boundary, weight, ray.allowance, ray.level);
+    if (material.has_reflection || material.has_transmission) branch(point, boundary, weight, ray.allowance, ray.level);
   }
 
   /// What arrives of a light's rays at a point that lies in `media`.

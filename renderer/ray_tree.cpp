@@ -134,7 +134,7 @@ struct SampleTracer::State {
   const PendingRay* contexts = nullptr;  ///< [rays.size] of the batch under way; read before children are spawned
   std::vector<std::uint32_t> hit_rays;   ///< [hit_count] index in the batch of each hit
   std::size_t hit_count = 0;
-  std::size_t point_count = 0;  ///< hit_count, less the surfaces that separate nothing
+  std::size_t point_count = 0;      ///< hit_count, less the surfaces that separate nothing
   std::vector<BatchPoint> points;   ///< hits of the batch under way
   std::vector<PendingRay> pending;  ///< the newest rays are traced first
   /// What the batch under way spawns, before it joins the pending rays: apart, so that neighbours in a packet run much
@@ -149,7 +149,7 @@ struct SampleTracer::State {
   // Where media are tracked:
   const bool tracks_media = kFeatures.media && scene.tracks_media;
   std::optional<MediaTable> media;
-  std::vector<ShapeId> eye_shapes;        ///< that a perspective eye lies in
+  std::vector<ShapeId> eye_shapes;  ///< that a perspective eye lies in
   bool knows_eye_shapes = false;
   std::vector<MediaBoundary> boundaries;  ///< [point_count] what each point separates
   std::vector<MediaId> shadow_media;      ///< that shadow rays start in
@@ -399,7 +399,8 @@ void SampleTracer::State::spawn() {
         cut(point.sample, reflected_bound);
       else
         reflected_rays.push_back({offset_origin(surface, surface.geometric_normal), shares.reflected,
-                                  children.reflected, point.sample, media_before(p), reflected_weight, point.level + 1});
+                                  children.reflected, point.sample, media_before(p), reflected_weight,
+                                  point.level + 1});
     }
     if (refracts) {
       if (shares.cuts_refracted)

@@ -163,9 +163,10 @@ void warn_of_more_light_than_arrives(const Scene& scene, Warnings& warnings) {
         warnings.push_back({place_of(scene.description, described[i]),
                             "returns more light than arrives: reflection or transmission exceeds 1"});
     } else if (max_channel(material.reflection + material.transmission) > kOne) {
-      warnings.push_back({place_of(scene.description, described[i]),
-                          "returns more light than arrives: reflection + transmission exceed 1; Fresnel's weights would "
-                          "not (\"fresnel\": true)"});
+      warnings.push_back(
+          {place_of(scene.description, described[i]),
+           "returns more light than arrives: reflection + transmission exceed 1; Fresnel's weights would "
+           "not (\"fresnel\": true)"});
     }
   }
 }

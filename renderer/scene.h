@@ -80,7 +80,7 @@ class Scene {
   RadianceBound bound;
   bool transparent_shadows = false;  ///< light is to be followed through what transmits, and something does
   bool tracks_media = false;         ///< overlapping media are told apart by priority, and some material sets one
-  SmallObjects small_objects;  ///< as the camera sees them; none unless the anti-aliasing asks for them
+  SmallObjects small_objects;        ///< as the camera sees them; none unless the anti-aliasing asks for them
 };
 
 /// Loads mesh files, generates and transforms shapes, builds the intersector. Throws Error; what was odd is added to

@@ -144,7 +144,7 @@ struct MaterialDescription {
   double index_of_refraction = 1.5;  ///< of the inside over the outside, > 0
   /// Whether k_s and k_t follow Fresnel by angle; default: as RenderSettings::fresnel says.
   std::optional<bool> fresnel;
-  bool conductor = false;  ///< k_s is the reflectance at normal incidence and rises to 1 by Schlick's formula
+  bool conductor = false;   ///< k_s is the reflectance at normal incidence and rises to 1 by Schlick's formula
   Rgb absorption{0, 0, 0};  ///< a of exp(-a t) inside, per scene unit
   bool thin = false;        ///< a sheet without an inside: transmits without bending
   int priority = 0;         ///< among overlapping media the highest is there; 0 everywhere: media are not tracked

@@ -416,20 +416,22 @@ void visit_fields(Visitor& visit, T& material) {
               .text = "Whether `reflection` is that of a metal at normal incidence: k_s + (1 - k_s) (1 - cos i)^5 by "
                       "Schlick's formula; it transmits nothing"},
         material.conductor);
-  visit(Field{.key = "absorption",
-              .text = "a of exp(-a t): what a length t inside lets through. It acts on the way to a surface that is hit "
-                      "from behind; where some material has a priority, on every way inside",
-              .unit = "per scene unit",
-              .range = kNotNegative},
-        material.absorption);
+  visit(
+      Field{.key = "absorption",
+            .text = "a of exp(-a t): what a length t inside lets through. It acts on the way to a surface that is hit "
+                    "from behind; where some material has a priority, on every way inside",
+            .unit = "per scene unit",
+            .range = kNotNegative},
+      material.absorption);
   visit(Field{.key = "thin",
               .text = "Whether the surface is a sheet without an inside, which transmits without bending; with fresnel "
                       "it reflects what both faces of a thin pane do, 2F / (1 + F)"},
         material.thin);
   visit(Field{.key = "priority",
-              .text = "Where media overlap, that of the highest priority is there, and surfaces of the others do nothing; "
-                      "of equal ones that which was entered last. 0 in every material: media are not tracked, and a "
-                      "surface separates its own inside from empty space",
+              .text =
+                  "Where media overlap, that of the highest priority is there, and surfaces of the others do nothing; "
+                  "of equal ones that which was entered last. 0 in every material: media are not tracked, and a "
+                  "surface separates its own inside from empty space",
               .range = {-1000, 1000}},
         material.priority);
 }
@@ -578,11 +580,10 @@ void visit_fields(Visitor& visit, T& scene) {
 
 /// A struct with a table.
 template <class T>
-concept Table =
-    Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> || Is<T, CameraDescription> ||
-    Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, AngleWeight> || Is<T, HighlightDescription> ||
-    Is<T, MaterialDescription> ||
-    Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
+concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> ||
+    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, AngleWeight> ||
+    Is<T, HighlightDescription> || Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> ||
+    Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.
 template <class T>

@@ -388,8 +388,9 @@ class ReferenceWriter {
   }
 
   void builtin_materials_table() {
-    text_ += "\n### What `from` of a material may name\n\nPhong 1973, Appendix II and p. 60: reflection coefficients, W "
-             "and n.\n\n| name | what it is |\n|---|---|\n";
+    text_ +=
+        "\n### What `from` of a material may name\n\nPhong 1973, Appendix II and p. 60: reflection coefficients, W "
+        "and n.\n\n| name | what it is |\n|---|---|\n";
     for (const BuiltinMaterial& material : builtin_materials())
       text_ += "| `" + material.description.name + "` | " + sentence(material.text) + " |\n";
   }

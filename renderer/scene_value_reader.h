@@ -200,7 +200,8 @@ void read(const Place& at, const Field& field, JsonValue value, std::vector<T>& 
   out.clear();
   out.reserve(value.size());
   value.for_each_element([&](JsonValue element) {
-    read(Place(at, static_cast<std::int64_t>(out.size())), field, element, out.emplace_back());
+    const auto index = static_cast<std::int64_t>(out.size());
+    read(Place(at, index), field, element, out.emplace_back());
   });
 }
 

@@ -1,5 +1,6 @@
 #include "renderer/shadow_path.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/surface.h"
@@ -7,13 +8,14 @@
 namespace raytree {
 namespace {
 
-/// Two triangles that share an edge or a vertex may both report a ray that meets it: from the far side of the first, the
-/// second is met from the same side once more. No ray crosses a closed mesh twice the same way in between, and one plane
-/// only once; so a hit whose plane holds the point crossed before, up to the clearances that the ray was moved by, is
-/// the same crossing.
+/// Two triangles that share an edge or a vertex may both report a ray that meets it: behind the first, the second is
+/// met from the same side once more. No ray crosses a closed mesh twice the same way with nothing in between, and one
+/// plane only once; so where one of the two points lies on the other's plane, up to the clearances that the ray was
+/// moved by, the crossing is the same.
 bool is_same_crossing(const ShadowPath& path, const Hit& hit, bool leaving, const SurfacePoint& point) {
   if (hit.geometry != path.geometry || leaving != path.leaving || hit.geometry < kFirstMeshGeometry) return false;
-  return std::abs((path.position - point.position).dot(point.geometric_normal)) <=
+  const Vec3f between = point.position - path.position;
+  return std::min(std::abs(between.dot(point.geometric_normal)), std::abs(between.dot(path.normal))) <=
          2 * (path.clearance + point.clearance);
 }
 
@@ -49,6 +51,7 @@ bool follow_shadow(const Scene& scene, MediaTable* media, const Hit& hit, Shadow
   path.geometry = hit.geometry;
   path.leaving = leaving;
   path.position = point.position;
+  path.normal = point.geometric_normal;
   path.clearance = point.clearance;
   const Vec3f next = offset_origin(point, leaving ? point.geometric_normal : -point.geometric_normal);
   path.distance -= (next - path.origin).dot(path.direction);

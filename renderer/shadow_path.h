@@ -22,23 +22,23 @@ struct ShadowPath {
   ShadowPath(const Vec3f& from, const Vec3f& direction_, float distance_, MediaId media_)
       : origin(from), direction(direction_), distance(distance_), media(media_) {}
 
-  Vec3f origin, direction;      ///< of what is left of it; direction unit
-  float distance = 0;           ///< left to the light; infinity: directional
-  Rgb transmittance{1, 1, 1};   ///< so far: in [0, 1]
-  std::uint32_t ray = 0;        ///< of its batch
-  std::uint32_t queries = 0;    ///< nearest hits asked for
-  MediaId media = kNoMedia;     ///< that it is in, where media are tracked
+  Vec3f origin, direction;     ///< of what is left of it; direction unit
+  float distance = 0;          ///< left to the light; infinity: directional
+  Rgb transmittance{1, 1, 1};  ///< so far: in [0, 1]
+  std::uint32_t ray = 0;       ///< of its batch
+  std::uint32_t queries = 0;   ///< nearest hits asked for
+  MediaId media = kNoMedia;    ///< that it is in, where media are tracked
   // The surface crossed last.
   GeometryId geometry = kNoGeometry;
   bool leaving = false;
   int crossings = 0;
-  Vec3f position;
+  Vec3f position, normal;
   float clearance = 0;
 };
 
 /// Takes the path to and through `hit`, the nearest one. k_t for each surface, exp(-a t) for the way to a surface that
-/// is hit from behind; with `media` (null: not tracked) k_t where two media meet, exp(-a t) by the medium that is there.
-/// False: the path has ended, and its transmittance is what arrives.
+/// is hit from behind; with `media` (null: not tracked) k_t where two media meet, exp(-a t) by the medium that is
+/// there. False: the path has ended, and its transmittance is what arrives.
 bool follow_shadow(const Scene& scene, MediaTable* media, const Hit& hit, ShadowPath& path);
 
 /// The paths of one batch of shadow rays.

@@ -15,8 +15,9 @@ namespace {
 
 TEST(BuiltinMaterials, HaveTheNumbersOfAppendixII) {
   const std::map<std::string, double> reflectances{
-      {"phong-white", .80},  {"phong-red-purple", .16},   {"phong-red", .20},   {"phong-orange", .38}, {"phong-yellow", .60},
-      {"phong-violet", .14}, {"phong-yellow-green", .46}, {"phong-green", .32}, {"phong-blue", .23}};
+      {"phong-white", .80},        {"phong-red-purple", .16}, {"phong-red", .20},
+      {"phong-orange", .38},       {"phong-yellow", .60},     {"phong-violet", .14},
+      {"phong-yellow-green", .46}, {"phong-green", .32},      {"phong-blue", .23}};
   for (const auto& [name, reflectance] : reflectances) {
     const MaterialDescription* material = builtin_material(name);
     ASSERT_NE(material, nullptr) << name;
@@ -88,11 +89,13 @@ TEST(MaterialChecks, NameFileLineAndMaterial) {
   };
   EXPECT_NE(refusal(R"({"conductor": true, "transmission": 0.5})").find("s.json:3: materials.m: a conductor transmits"),
             std::string::npos);
-  EXPECT_NE(refusal(R"({"thin": true, "absorption": 1})").find("s.json:3: materials.m: a thin sheet"), std::string::npos);
+  EXPECT_NE(refusal(R"({"thin": true, "absorption": 1})").find("s.json:3: materials.m: a thin sheet"),
+            std::string::npos);
   EXPECT_NE(refusal(R"({"absorption": [0, -1, 0]})").find("out of range"), std::string::npos);
   EXPECT_NE(refusal(R"({"priority": 1.5})").find("whole number"), std::string::npos);
-  EXPECT_NE(refusal(R"({"highlight": {"weight_by_angle": [{"angle": 95, "weight": 1}]}})").find("weight_by_angle[0].angle"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(R"({"highlight": {"weight_by_angle": [{"angle": 95, "weight": 1}]}})").find("weight_by_angle[0].angle"),
+      std::string::npos);
   EXPECT_NE(refusal(R"({"highlight": {"weight_by_angle": [{"angle": 5}]}})").find("missing key \"weight\""),
             std::string::npos);
 }

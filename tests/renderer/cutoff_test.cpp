@@ -64,7 +64,8 @@ class RandomScenes {
       if (chance(0.15)) m.thin = true, m.absorption = Rgb(0);
       if (chance(0.15)) m.conductor = true, m.transmission = Rgb(0);
       if (layered) m.priority = integer(-1, 2);
-      if (chance(0.2)) m.highlight = {Rgb(0), uniform(1, 80), {{uniform(0, 40), color(0.8)}, {uniform(50, 90), color(0.8)}}};
+      if (chance(0.2))
+        m.highlight = {Rgb(0), uniform(1, 80), {{uniform(0, 40), color(0.8)}, {uniform(50, 90), color(0.8)}}};
       scene.materials.push_back(m);
     }
     const auto any_material = [&] { return "m" + std::to_string(integer(0, materials - 1)); };

@@ -13,8 +13,8 @@ namespace {
 
 using namespace test;
 
-/// Every feature at once: mirrors, glass, both lights, checker, gradient, smooth mesh, planes, discs, spheres; liquid that
-/// reaches into colored glass, a thin sheet, metal with a highlight by angle.
+/// Every feature at once: mirrors, glass, both lights, checker, gradient, smooth mesh, planes, discs, spheres; liquid
+/// that reaches into colored glass, a thin sheet, metal with a highlight by angle.
 SceneDescription busy_scene() {
   CameraDescription camera;
   camera.position = {1, 2, 7};
@@ -34,7 +34,8 @@ SceneDescription busy_scene() {
   scene.materials[2].reflection = Rgb(0.8f);
   scene.materials[2].highlight = {Rgb(0.5f), 50};
   scene.materials[3].highlight = {Rgb(0.5f), 20};
-  MaterialDescription bottle = material("bottle", Rgb(0)), liquid = bottle, sheet = bottle, metal = material("metal", Rgb(0));
+  MaterialDescription bottle = material("bottle", Rgb(0)), liquid = bottle, sheet = bottle,
+                      metal = material("metal", Rgb(0));
   bottle.transmission = liquid.transmission = sheet.transmission = Rgb(0.9f, 1, 0.8f);
   bottle.reflection = liquid.reflection = sheet.reflection = Rgb(1);
   bottle.absorption = Rgb(0.5f, 0.1f, 1), bottle.priority = 2;

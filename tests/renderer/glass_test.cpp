@@ -1,5 +1,5 @@
-// Glass and metal in closed form: Beer's law along the ways inside, thin sheets, Schlick's conductors, and what is said of
-// materials that cannot be or that make light.
+// Glass and metal in closed form: Beer's law along the ways inside, thin sheets, Schlick's conductors, and what is said
+// of materials that cannot be or that make light.
 #include <gtest/gtest.h>
 
 #include "renderer/material.h"
@@ -88,7 +88,8 @@ TEST(Absorption, OfFresnelGlassIsTheSeriesOfItsBounces) {
   SceneDescription scene = white_scene(glass);
   scene.render.depth = 30;
   scene.materials.push_back(material("wall", Rgb(0)));
-  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "glass"), shape(PlaneShape{{0, 0, -0.5}, {0, 0, -1}}, "glass"),
+  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "glass"),
+                  shape(PlaneShape{{0, 0, -0.5}, {0, 0, -1}}, "glass"),
                   shape(PlaneShape{{0, 0, -2}, {0, 0, 1}}, "wall")};
   const double f = 0.04;
   const auto reflected = [&](double a) {
@@ -162,8 +163,8 @@ TEST(Conductor, ReflectsByChannelAsSchlickHasIt) {
       scene.render.depth = 2;
       const double grazing = std::pow(1 - std::cos(degrees * kDegree), 5);
       const auto expected = [&](double k) { return static_cast<float>(k + (1 - k) * grazing); };
-      expect_color(color_at(rendered(scene).film, 0, 0), Rgb(expected(0.9), expected(0.5), expected(0)), 4 * kFloatError,
-                   std::to_string(degrees));
+      expect_color(color_at(rendered(scene).film, 0, 0), Rgb(expected(0.9), expected(0.5), expected(0)),
+                   4 * kFloatError, std::to_string(degrees));
       // A black metal still reflects at grazing angles.
       scene.materials[0].reflection = Rgb(0);
       expect_color(color_at(rendered(scene).film, 0, 0), Rgb(expected(0)), 4 * kFloatError);

@@ -1,5 +1,5 @@
-// Overlapping media by priority: three interfaces by Snell's law, whatever the overlap (catalogue of failures, 33); what
-// lies in a medium of higher priority does nothing; where the eye is.
+// Overlapping media by priority: three interfaces by Snell's law, whatever the overlap (catalogue of failures, 33);
+// what lies in a medium of higher priority does nothing; where the eye is.
 #include "renderer/media.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,8 @@ SceneDescription glass_over_liquid(double angle, double overlap) {
 TEST(Media, LiquidInGlassBendsAsThreeInterfacesHoweverFarItOverlaps) {
   for (const double overlap : {1e-3, 0.1, 0.9})
     for (const double degrees : {10.0, 40.0, 70.0}) {
-      const double i = degrees * kDegree, in_glass = std::asin(std::sin(i) / 1.5), in_liquid = std::asin(std::sin(i) / 1.33);
+      const double i = degrees * kDegree, in_glass = std::asin(std::sin(i) / 1.5),
+                   in_liquid = std::asin(std::sin(i) / 1.33);
       // The ray travels toward -x. Pixels lie .25e-3 / cos i about the center.
       const double arrives = -0.25e-3 / std::cos(i) - std::tan(in_glass) - std::tan(in_liquid);
       // An edge from black to white on the wall, moved over the place in steps, tells to within `step`: the same
@@ -87,11 +88,13 @@ TEST(Media, ShadowsGoByTheMediumThatIsThere) {
     scene.materials[0].transmission = Rgb(1, 1, 0.5f);
     scene.materials[1].transmission = Rgb(1, 1, 0.25f);
     scene.lights = {directional_light({0, 0, -1})};
-    // k_t is that of the glass twice, where the light enters it and where it leaves it into the liquid; the liquid's own
-    // surface lies in the glass and does nothing. The eye's way takes the same again.
+    // k_t is that of the glass twice, where the light enters it and where it leaves it into the liquid; the liquid's
+    // own surface lies in the glass and does nothing. The eye's way takes the same again.
     const auto e = [](double x) { return static_cast<float>(std::exp(x)); };
     expect_color(color_at(rendered(scene).film, 0, 0), Rgb(e(-2), e(-2), 0.0625f), 1e-4);
     // A light in the liquid: nothing is in its way, yet the liquid absorbs over the half unit to the wall.
+    const SceneDescription fresh = glass_over_liquid(0, overlap);  // prepare() has taken the meshes
+    scene.shapes = fresh.shapes;
     scene.lights = {point_light({0, 0, -1.5})};
     expect_color(color_at(rendered(scene).film, 0, 0), Rgb(e(-1), e(-1.5), 0.25f), 1e-4);
   }
@@ -103,7 +106,8 @@ TEST(Media, AnAirBubbleIsCarvedOutByItsPriority) {
   const auto picture = [](bool by_priority) {
     SceneDescription scene = dark_scene(48, front_camera(1.8));
     scene.background = GradientBackground{Rgb(1, 0, 0), Rgb(0, 1, 0), Rgb(0, 0, 1)};
-    scene.materials = {medium("glass", 1.5, by_priority ? 1 : 0), medium("air", by_priority ? 1 : 1 / 1.5, by_priority ? 2 : 0)};
+    scene.materials = {medium("glass", 1.5, by_priority ? 1 : 0),
+                       medium("air", by_priority ? 1 : 1 / 1.5, by_priority ? 2 : 0)};
     scene.shapes = {mesh_shape(box_mesh({-1, -1, -1}, {1, 1, 1}), "glass"), shape(SphereShape{{0, 0, 0}, 0.6}, "air")};
     return rendered(std::move(scene));
   };
@@ -117,22 +121,23 @@ TEST(Media, AnAirBubbleIsCarvedOutByItsPriority) {
     }
 }
 
-TEST(Media, OverlappingShapesOfOneMaterialAreOneMedium) {
-  const auto picture = [](bool two) {
+TEST(Media, WhatLiesInItsOwnKindOrInAHigherPriorityIsNotThere) {
+  const auto picture = [](bool more) {
     CameraDescription camera;
     camera.position = {1, 2, 5};
     SceneDescription scene = dark_scene(48, camera);
     scene.background = GradientBackground{Rgb(1, 0, 0), Rgb(0, 1, 0), Rgb(0, 0, 1)};
-    scene.materials = {medium("glass", 1.5, 1, Rgb(0.3f, 0.5f, 0.7f)), material("floor", Rgb(0.5f))};
+    scene.materials = {medium("glass", 1.5, 1, Rgb(0.3f, 0.5f, 0.7f)), material("floor", Rgb(0.5f)),
+                       medium("oil", 1.7, -1, Rgb(5))};
     scene.materials[0].reflection = Rgb(0.2f);
     scene.materials[0].transmission = Rgb(0.7f);
+    scene.materials[2].diffuse = Rgb(1);
     scene.lights = {directional_light({-1, -3, -1})};
-    scene.shapes = {shape(PlaneShape{{0, -1, 0}, {0, 1, 0}}, "floor")};
-    if (two) {
-      scene.shapes.push_back(mesh_shape(box_mesh({-1, -0.5f, -0.5f}, {0.25f, 0.5f, 0.5f}), "glass"));
-      scene.shapes.push_back(mesh_shape(box_mesh({-0.25f, -0.5f, -0.5f}, {1, 0.5f, 0.5f}), "glass"));
-    } else {
-      scene.shapes.push_back(mesh_shape(box_mesh({-1, -0.5f, -0.5f}, {1, 0.5f, 0.5f}), "glass"));
+    scene.shapes = {shape(PlaneShape{{0, -1, 0}, {0, 1, 0}}, "floor"),
+                    mesh_shape(box_mesh({-1, -0.5f, -0.5f}, {1, 0.5f, 0.5f}), "glass")};
+    if (more) {
+      scene.shapes.push_back(shape(SphereShape{{-0.4, 0, 0}, 0.45}, "glass"));
+      scene.shapes.push_back(mesh_shape(box_mesh({-0.25f, -0.4f, -0.4f}, {0.9f, 0.4f, 0.4f}), "oil"));
     }
     return rendered(std::move(scene));
   };
@@ -143,16 +148,30 @@ TEST(Media, OverlappingShapesOfOneMaterialAreOneMedium) {
       const Rgb a = color_at(two.film, x, y), b = color_at(one.film, x, y);
       differing += max_channel(max(a - b, b - a)) > 1e-4f;
       const std::size_t p = pixel_index(two.film, x, y);
-      EXPECT_NEAR(std::min(two.film.plane(ChannelGroup::depth, 0)[p], 1e3f),
-                  std::min(one.film.plane(ChannelGroup::depth, 0)[p], 1e3f), 1e-4);
+      EXPECT_EQ(two.film.id_plane(ChannelGroup::object_id)[p], one.film.id_plane(ChannelGroup::object_id)[p]);
     }
-  // Of some hundreds of pixels on glass a few see an edge that rounding decides.
-  EXPECT_LE(differing, 4);
+  // Passing a surface moves a ray by its clearance: a pixel or two may see an edge fall to the other side.
+  EXPECT_LE(differing, 2);
+}
+
+TEST(Media, FirstHitsLieBehindWhatIsPassed) {
+  // The eye in glass; a ball of lower priority between it and the wall is not seen, in no channel.
+  SceneDescription scene = dark_scene(8, front_camera(1));
+  scene.materials = {medium("glass", 1.5, 1), medium("oil", 1.7, 0), material("wall", Rgb(0.25f))};
+  scene.ambient = Rgb(1);
+  scene.shapes = {shape(SphereShape{{0, 0, 0}, 50}, "glass"), shape(SphereShape{{0, 0, 0}, 1}, "oil"),
+                  shape(PlaneShape{{0, 0, -3}, {0, 0, 1}}, "wall")};
+  const RenderResult result = rendered(scene);
+  for (int i = 0; i < 64; ++i) {
+    EXPECT_EQ(result.film.id_plane(ChannelGroup::object_id)[i], 3u);
+    EXPECT_NEAR(result.film.plane(ChannelGroup::depth, 0)[i], 13, 1e-4);
+    EXPECT_EQ(result.film.plane(ChannelGroup::color, 0)[i], 0.25f);
+  }
 }
 
 TEST(Media, AnEyeInLiquidInGlassKnowsWhereItIs) {
-  // Liquid (radius 1) in a thick bowl (radius 2), both about the origin, the eye at (0, 0, .5): two interfaces by Snell's
-  // law on the way out.
+  // Liquid (radius 1) in a thick bowl (radius 2), both about the origin, the eye at (0, 0, .5): two interfaces by
+  // Snell's law on the way out.
   for (const bool parallel : {false, true}) {
     CameraDescription camera;
     camera.position = {0, 0, 0.5};
@@ -162,8 +181,8 @@ TEST(Media, AnEyeInLiquidInGlassKnowsWhereItIs) {
     SceneDescription scene = dark_scene(32, camera);
     scene.background = GradientBackground{Rgb(0), Rgb(0), Rgb(1)};
     scene.materials = {medium("glass", 1.5, 2), medium("liquid", 1.33, 1)};
-    // The bowl is a ball of glass; where the liquid is, no glass is; and the hollow that it fills, of a priority between
-    // theirs, does nothing.
+    // The bowl is a ball of glass; where the liquid is, no glass is; and the hollow that it fills, of a priority
+    // between theirs, does nothing.
     scene.materials[1].priority = 4;
     scene.materials.push_back(medium("hollow", 1, 3));
     scene.shapes = {shape(SphereShape{{0, 0, 0}, 2}, "glass"), shape(SphereShape{{0, 0, 0}, 1}, "liquid"),
@@ -202,7 +221,8 @@ TEST(Media, AnEyeInLiquidInGlassKnowsWhereItIs) {
 TEST(Media, HalfSpacesAreJudgedByTheirSide) {
   SceneDescription scene = dark_scene(2, front_camera(1));
   scene.materials = {medium("water", 1.33, 1, Rgb(0, 1, 2)), medium("air", 1, 5)};
-  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 1, 0}}, "water", "sea"), shape(SphereShape{{0, -2, 0}, 1}, "air", "bubble")};
+  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 1, 0}}, "water", "sea"),
+                  shape(SphereShape{{0, -2, 0}, 1}, "air", "bubble")};
   scene.cameras[0].position = {0, -2, 0.5};
   scene.cameras[0].target = {0, -2.5, 0};
   scene.background = ConstantBackground{Rgb(1)};
@@ -219,7 +239,8 @@ TEST(Media, HalfSpacesAreJudgedByTheirSide) {
 TEST(Media, TablesKeepTheirSets) {
   SceneDescription scene = dark_scene(2, front_camera(1));
   scene.materials = {medium("a", 1.5, 1), medium("b", 1.3, 1), medium("c", 2, 3), material("opaque", Rgb(1))};
-  for (const char* name : {"a", "b", "c", "a", "opaque"}) scene.shapes.push_back(shape(SphereShape{{0, 0, 0}, 1}, name));
+  for (const char* name : {"a", "b", "c", "a", "opaque"})
+    scene.shapes.push_back(shape(SphereShape{{0, 0, 0}, 1}, name));
   const Scene ready = prepared(scene);
   MediaTable table(ready);
   const MediaBoundary into_a = table.boundary(kNoMedia, 0, false);

@@ -26,10 +26,11 @@ inline bool equal(const CameraDescription& a, const CameraDescription& b) {
          angle == b.field_of_view && height == b.height;
 }
 inline bool equal(const RenderSettings& a, const RenderSettings& b) {
-  const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, transparent, shadowed, fresnel, attenuation] = a;
+  const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, transparent, shadowed, fresnel, attenuation] =
+      a;
   return depth == b.depth && cutoff == b.cutoff && equal(antialias, b.antialias) && equal(adaptive, b.adaptive) &&
-         highlights == b.highlights && shadows == b.shadows && transparent == b.transparent_shadows && shadowed == b.shadowed_highlights &&
-         fresnel == b.fresnel && attenuation == b.distance_attenuation;
+         highlights == b.highlights && shadows == b.shadows && transparent == b.transparent_shadows &&
+         shadowed == b.shadowed_highlights && fresnel == b.fresnel && attenuation == b.distance_attenuation;
 }
 inline bool equal(const ConstantBackground& a, const ConstantBackground& b) {
   const auto& [color] = a;

@@ -1,5 +1,4 @@
 // Scene files: what each value comes to, what is refused and in which words, --set, and writing that reads back.
-#include "renderer/material.h"
 #include "renderer/scene_reader.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include <fstream>
 #include <random>
 
+#include "renderer/material.h"
 #include "renderer/suggestion.h"
 #include "tests/renderer/scene_equality.h"
 

@@ -1,5 +1,5 @@
-// Light through what transmits, straight on: k_t for each crossing, Beer's law inside, duplicates at shared edges counted
-// once, the same in any company.
+// Light through what transmits, straight on: k_t for each crossing, Beer's law inside, duplicates at shared edges
+// counted once, the same in any company.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,15 +36,14 @@ SceneDescription floor_scene(const MaterialDescription& between, int size = 16) 
 Rgb times(Rgb a, const Vec3d& b) {
   return {static_cast<float>(a.r * b.x), static_cast<float>(a.g * b.y), static_cast<float>(a.b * b.z)};
 }
-Vec3d beer(Rgb a, double length) {
-  return {std::exp(-a.r * length), std::exp(-a.g * length), std::exp(-a.b * length)};
-}
+Vec3d beer(Rgb a, double length) { return {std::exp(-a.r * length), std::exp(-a.g * length), std::exp(-a.b * length)}; }
 
 TEST(TransparentShadows, EachCrossingTakesKtAndTheInsideBeersShare) {
   const Rgb k_t(1, 0.5f, 0.25f), a(0, 0.7f, 2);
   SceneDescription scene = floor_scene(glass(k_t, a));
   scene.shapes.push_back(mesh_shape(box_mesh({-3, -3, 1}, {3, 3, 1.75f}), "glass"));
-  // Each of about ten roundings is half an ulp; the way inside begins an offset of some 16 half ulps beside the surface.
+  // Each of about ten roundings is half an ulp; the way inside begins an offset of some 16 half ulps beside the
+  // surface.
   expect_color(color_at(rendered(scene).film, 3, 4), times(k_t * k_t, beer(a, 0.75)), 4 * kFloatError);
 
   // A sheet of one surface takes k_t once; a second one behind it again, in whatever order they stand in the scene.
@@ -173,10 +172,11 @@ TEST(TransparentShadows, SharedEdgesOfAClosedMeshCountOnce) {
     const char* what;
     std::shared_ptr<PolygonMesh> mesh;
   };
-  for (const Case& c : {Case{"globe", globe_mesh(1, 24, 12)}, Case{"box", box_mesh({-0.6f, -0.5f, -0.4f}, {0.3f, 0.7f, 0.8f})},
-                        // Edges of 15 degrees: what steps off one face sideways comes out of the other.
-                        Case{"blade", triangles({{-1, -0.13f, 0}, {-1, 0.13f, 0}, {-1, 0, 1}, {1, -0.13f, 0}, {1, 0.13f, 0}, {1, 0, 1}},
-                                                {0, 1, 4, 0, 4, 3, 0, 3, 5, 0, 5, 2, 1, 2, 5, 1, 5, 4, 0, 2, 1, 3, 4, 5})}}) {
+  for (const Case& c :
+       {Case{"globe", globe_mesh(1, 24, 12)}, Case{"box", box_mesh({-0.6f, -0.5f, -0.4f}, {0.3f, 0.7f, 0.8f})},
+        // Edges of 15 degrees: what steps off one face sideways comes out of the other.
+        Case{"blade", triangles({{-1, -0.13f, 0}, {-1, 0.13f, 0}, {-1, 0, 1}, {1, -0.13f, 0}, {1, 0.13f, 0}, {1, 0, 1}},
+                                {0, 1, 4, 0, 4, 3, 0, 3, 5, 0, 5, 2, 1, 2, 5, 1, 5, 4, 0, 2, 1, 3, 4, 5})}}) {
     SceneDescription description = dark_scene(2, front_camera(1));
     description.materials = {glass(Rgb(0.5f))};
     description.shapes = {mesh_shape(c.mesh, "glass")};
@@ -225,7 +225,8 @@ TEST(TransparentShadows, ARayBringsTheSameAloneAndInAnyCompany) {
   const Scene scene = prepared(std::move(description));
   const std::size_t count = 1000;
   RayBatch rays(count);
-  for (const EdgeRay& ray : edge_rays(scene.shapes->meshes[0].mesh, 300, true, 5)) rays.push(ray.origin, ray.direction, 9);
+  for (const EdgeRay& ray : edge_rays(scene.shapes->meshes[0].mesh, 300, true, 5))
+    rays.push(ray.origin, ray.direction, 9);
   while (rays.size < count) {
     const Vec3f direction(unit(Vec3d(gauss(random), gauss(random), gauss(random))));
     rays.push(Vec3f(Vec3d(uniform(random), uniform(random), uniform(random))), direction,
@@ -254,9 +255,9 @@ TEST(TransparentShadows, ARayBringsTheSameAloneAndInAnyCompany) {
 }
 
 TEST(TransparentShadows, AdaptiveSamplesSeeTheirColoredEdges) {
-  // The shadow of a disc that takes green alone: the mean of green over the picture is 1 - (1 - k_t) pi r^2 / area. With
-  // up to 4 divisions a pixel of 1/8 unit is resolved to 1/128; the error of an outline of length 2 pi r averages out
-  // over some 400 squares of the last level: under a tenth of a square's weight each.
+  // The shadow of a disc that takes green alone: the mean of green over the picture is 1 - (1 - k_t) pi r^2 / area.
+  // With up to 4 divisions a pixel of 1/8 unit is resolved to 1/128; the error of an outline of length 2 pi r averages
+  // out over some 400 squares of the last level: under a tenth of a square's weight each.
   SceneDescription scene = floor_scene(glass(Rgb(1, 0.25f, 1)));
   scene.shapes.push_back(shape(DiscShape{{0.03, -0.02, 1}, {0, 0, 1}, 0.61}, "glass"));
   scene.render.antialias.method = Antialiasing::Method::whitted;
