@@ -85,8 +85,8 @@ struct SampleTracer::State {
     reflected_rays.reserve(kBatchSize);
     refracted_rays.reserve(kBatchSize);
     for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
-    if (kFeatures.transparent_shadows && scene.transparent_shadows) shadow_paths.emplace(scene, kBatchSize);
-    if (tracks_media) {
+    if (follows_shadows()) shadow_paths.emplace(scene, kBatchSize);
+    if (tracks_media()) {
       media.emplace(scene);
       boundaries.resize(kBatchSize);
       shadow_media.resize(kBatchSize);
@@ -99,6 +99,8 @@ struct SampleTracer::State {
 
   bool trace(std::span<const Vec2f> positions);
   void begin_sample(std::size_t i, const Vec2f& position);
+  bool tracks_media() const { return kFeatures.media && scene.tracks_media; }
+  bool follows_shadows() const { return kFeatures.transparent_shadows && scene.transparent_shadows; }
   bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
   void trace_batch(Coherence coherence, bool eye);
   void collect_hits();
@@ -110,8 +112,8 @@ struct SampleTracer::State {
   void add_lights();
   void follow_shadows(std::size_t count);
   void spawn();
-  MediaId media_before(std::size_t p) const { return tracks_media ? boundaries[p].before : kNoMedia; }
-  MediaId media_after(std::size_t p) const { return tracks_media ? boundaries[p].after : kNoMedia; }
+  MediaId media_before(std::size_t p) const { return tracks_media() ? boundaries[p].before : kNoMedia; }
+  MediaId media_after(std::size_t p) const { return tracks_media() ? boundaries[p].after : kNoMedia; }
   void cut(std::uint32_t sample, const Rgb& bound);
   void add_children(RayKind kind, std::vector<PendingRay>& children);
   void record_first_hit(const BatchPoint& point, ShapeId shape);
@@ -147,7 +149,6 @@ struct SampleTracer::State {
   std::optional<ShadowPaths> shadow_paths;
 
   // Where media are tracked:
-  const bool tracks_media = kFeatures.media && scene.tracks_media;
   std::optional<MediaTable> media;
   std::vector<ShapeId> eye_shapes;  ///< that a perspective eye lies in
   bool knows_eye_shapes = false;
@@ -168,7 +169,7 @@ void SampleTracer::State::begin_sample(std::size_t i, const Vec2f& position) {
 /// Traces the eye rays of up to kBatchSize samples and all that grows from them. False: stopped.
 bool SampleTracer::State::trace(std::span<const Vec2f> positions) {
   for (std::size_t i = 0; i < positions.size(); ++i) begin_sample(i, positions[i]);
-  if (tracks_media) find_eye_media(positions);
+  if (tracks_media()) find_eye_media(positions);
   std::fill(results.truncation.begin(), results.truncation.end(), Rgb());
   std::fill(results.ray_counts.begin(), results.ray_counts.end(), 1u);
   std::fill(results.first_hits.begin(), results.first_hits.end(), FirstHit());
@@ -204,7 +205,7 @@ void SampleTracer::State::trace_batch(Coherence coherence, bool eye) {
   spawn();
   add_children(RayKind::reflected, reflected_rays);
   add_children(RayKind::refracted, refracted_rays);
-  if (tracks_media) add_children(RayKind::refracted, passed_rays);
+  if (tracks_media()) add_children(RayKind::refracted, passed_rays);
   const double shadow_seconds = statistics.intersection_seconds - intersection_before;
   statistics.shading_seconds += seconds_since(hit) - shadow_seconds;
   statistics.intersection_seconds += std::chrono::duration<double>(hit - start).count();
@@ -231,7 +232,7 @@ void SampleTracer::State::collect_hits() {
     // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
     const Vec3f poison = (ray.origin + ray.direction) * 0.0f;
     results.radiance[ray.sample] +=
-        (tracks_media ? escaping_weight(ray) : ray.weight) * scene.background.along(ray.direction) +
+        (tracks_media() ? escaping_weight(ray) : ray.weight) * scene.background.along(ray.direction) +
         Rgb(poison.x + poison.y + poison.z);
   }
   prefetch_triangles(shapes);
@@ -250,9 +251,9 @@ void SampleTracer::State::collect_hits() {
     point.allowance = ray.allowance;
     point.sample = ray.sample;
     point.level = ray.level;
-    if (kFeatures.absorption && material.absorbs && point.shading.leaving && !tracks_media)
+    if (kFeatures.absorption && material.absorbs && point.shading.leaving && !tracks_media())
       point.weight *= transmitted_share(material.absorption, point.shading.surface.distance);
-    if (tracks_media && passes(point, boundaries[point_count], ray, shape)) continue;
+    if (tracks_media() && passes(point, boundaries[point_count], ray, shape)) continue;
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && ray.level > 1)
       point.weight *=
           segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);
@@ -333,7 +334,7 @@ void SampleTracer::State::add_lights() {
       shadow_rays.set(count, origin, local.direction, local.distance);
       shadow_samples[count] = point.sample;
       shadow_light[count] = point.weight * shadowed;
-      if (tracks_media) shadow_media[count] = boundaries[static_cast<std::size_t>(&point - points.data())].before;
+      if (tracks_media()) shadow_media[count] = boundaries[static_cast<std::size_t>(&point - points.data())].before;
       ++count;
     }
     if (count == 0) continue;
@@ -342,7 +343,7 @@ void SampleTracer::State::add_lights() {
     scene.intersector->occluded(shadow_rays, Coherence::coherent, occluded.data());
     statistics.intersection_seconds += seconds_since(start);
     statistics.rays[static_cast<int>(RayKind::shadow)] += count;
-    if (shadow_paths || tracks_media) follow_shadows(count);
+    if (follows_shadows() || tracks_media()) follow_shadows(count);
     for (std::size_t i = 0; i < count; ++i)
       if (!occluded[i]) results.radiance[shadow_samples[i]] += shadow_light[i];
     if (kFeatures.ray_count_channel && records.ray_counts)
@@ -355,15 +356,15 @@ void SampleTracer::State::add_lights() {
   const auto start = Clock::now();
   if (shadow_paths) shadow_paths->clear();
   for (std::size_t i = 0; i < count; ++i) {
-    const MediaId set = tracks_media ? shadow_media[i] : kNoMedia;
+    const MediaId set = tracks_media() ? shadow_media[i] : kNoMedia;
     if (occluded[i]) {
       if (shadow_paths) shadow_paths->add(shadow_rays, i, set);
-    } else if (tracks_media) {
+    } else if (tracks_media()) {
       shadow_light[i] *= media->transmitted(set, shadow_rays.max_distance[i]);
     }
   }
   if (!shadow_paths) return;
-  shadow_paths->follow(tracks_media ? &*media : nullptr);
+  shadow_paths->follow(tracks_media() ? &*media : nullptr);
   for (const ShadowPath& path : shadow_paths->paths()) {
     const std::uint32_t sample = shadow_samples[path.ray];
     results.radiance[sample] += shadow_light[path.ray] * path.transmittance;
@@ -380,7 +381,7 @@ void SampleTracer::State::spawn() {
     if (!material.has_reflection && !material.has_transmission) continue;
     const std::size_t p = static_cast<std::size_t>(&point - points.data());
     const Branches children =
-        tracks_media ? branches_between(point.shading, boundaries[p].relative_index) : branches(point.shading);
+        tracks_media() ? branches_between(point.shading, boundaries[p].relative_index) : branches(point.shading);
     const Rgb reflected_weight = point.weight * children.reflected_weight;
     const Rgb refracted_weight = point.weight * children.refracted_weight;
     const bool reflects = !is_black(reflected_weight), refracts = !is_black(refracted_weight);

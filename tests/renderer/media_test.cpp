@@ -267,5 +267,31 @@ TEST(Media, TablesKeepTheirSets) {
   EXPECT_EQ(table.medium(kNoMedia), nullptr);
 }
 
+TEST(Media, ATableThatIsFullLeavesRaysInTheSetTheyHave) {
+  SceneDescription scene = dark_scene(2, front_camera(1));
+  scene.materials = {medium("a", 1.5, 1)};
+  for (int i = 0; i < 18; ++i) scene.shapes.push_back(shape(SphereShape{{0, 0, 0}, 1}, "a"));
+  const Scene ready = prepared(scene);
+  MediaTable table(ready);
+  std::size_t refused = 0;
+  MediaId last = kNoMedia;
+  for (std::uint32_t mask = 0; mask < 1u << 17; ++mask) {
+    std::vector<ShapeId> shapes;
+    for (ShapeId i = 0; i < 17; ++i)
+      if ((mask >> i & 1) != 0) shapes.push_back(i);
+    const MediaId id = table.set_of(shapes);
+    refused += id == kNoMedia && mask != 0;
+    if (id != kNoMedia) last = id;
+  }
+  EXPECT_EQ(refused, (1u << 17) - (1u << 16));
+  EXPECT_EQ(last, 65535);
+  const MediaBoundary into = table.boundary(last, 17, false);
+  EXPECT_EQ(into.before, last);
+  EXPECT_EQ(into.after, last);
+  EXPECT_TRUE(into.passes);
+  table.clear();
+  EXPECT_EQ(table.boundary(kNoMedia, 17, false).after, 1);
+}
+
 }  // namespace
 }  // namespace raytree
