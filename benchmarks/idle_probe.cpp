@@ -23,6 +23,7 @@ SceneDescription plain_scene() {
   scene.image = {256, 256};
   scene.render.depth = 6;
   scene.render.antialias = {Antialiasing::Method::none, 1};
+  scene.render.transparent_shadows = false;
   scene.background = ConstantBackground{Rgb(0.4f, 0.6f, 0.8f)};
   CameraDescription camera;
   camera.position = {0, 1.6, 6};

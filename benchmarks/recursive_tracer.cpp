@@ -9,13 +9,17 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "renderer/float_mode.h"
+#include "renderer/media.h"
 #include "renderer/shading.h"
+#include "renderer/shadow_path.h"
 
 namespace raytree::benchmarks {
 namespace {
 
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kColorTolerance = 2e-3f;
 constexpr double kFlippedShare = 1e-3;  ///< of pixels, and of rays
 
@@ -24,6 +28,7 @@ class Tracer {
   Tracer(const Scene& scene, const EmbreeIntersector& intersector)
       : scene_(scene), intersector_(intersector), settings_(scene.description.render) {
     for (const Material& material : scene.materials) wants_texture_ |= material.needs_texture;
+    if (scene.tracks_media) media_.emplace(scene);
   }
 
   std::array<std::uint64_t, kRayKindCount> rays{};
@@ -33,46 +38,87 @@ class Tracer {
     Vec3f origin, direction;
     scene_.camera.ray(x, y, origin, direction);
     count(RayKind::primary);
-    trace(origin, direction, Rgb(1), static_cast<float>(settings_.cutoff), 1);
+    MediaId media = kNoMedia;
+    if (media_) {
+      media_->clear();
+      media = media_->set_of(solids_around(scene_, origin, direction));
+    }
+    trace({origin, direction, Rgb(1), static_cast<float>(settings_.cutoff), 1, media});
     return is_finite(sum_) ? sum_ : Rgb();
   }
 
  private:
   void count(RayKind kind) { ++rays[static_cast<std::size_t>(kind)]; }
 
-  void trace(const Vec3f& origin, const Vec3f& direction, Rgb weight, float allowance, int level) {
-    const Hit hit = intersector_.intersect_one(origin, direction, std::numeric_limits<float>::infinity());
+  struct Ray {
+    Vec3f origin, direction;
+    Rgb weight;
+    float allowance;
+    int level;
+    MediaId media;
+  };
+
+  void trace(const Ray& ray) {
+    const Hit hit = intersector_.intersect_one(ray.origin, ray.direction, kInfinity);
+    Rgb weight = ray.weight;
     if (hit.geometry == kNoGeometry) {
-      sum_ += weight * scene_.background.along(direction);
+      if (media_) weight *= media_->transmitted(ray.media, kInfinity);
+      sum_ += weight * scene_.background.along(ray.direction);
       return;
     }
-    const SurfacePoint surface = surface_at(*scene_.shapes, origin, direction, hit, wants_texture_);
-    const ShadingPoint point = shading_point(surface, direction, scene_.materials[scene_.material_at(hit)]);
-    if (settings_.distance_attenuation > 0 && level > 1)
+    const SurfacePoint surface = surface_at(*scene_.shapes, ray.origin, ray.direction, hit, wants_texture_);
+    const Material& material = scene_.materials[scene_.material_at(hit)];
+    const ShadingPoint point = shading_point(surface, ray.direction, material);
+    MediaBoundary boundary;
+    if (media_) {
+      boundary = media_->boundary(ray.media, solid_at(scene_, hit), point.leaving);
+      weight *= media_->transmitted(boundary.before, surface.distance);
+      if (boundary.passes) {
+        count(RayKind::refracted);
+        trace({offset_origin(surface, -point.surface.geometric_normal), ray.direction, weight, ray.allowance, ray.level,
+               boundary.after});
+        return;
+      }
+    } else if (material.absorbs && point.leaving) {
+      weight *= transmitted_share(material.absorption, surface.distance);
+    }
+    if (settings_.distance_attenuation > 0 && ray.level > 1)
       weight *= segment_attenuation(static_cast<float>(settings_.distance_attenuation), surface.distance);
-    sum_ += weight * scene_.ambient * point.material->ambient.at(point.surface);
-    if (point.material->has_diffuse || point.material->has_highlight)
-      for (const Light& light : scene_.lights) add_light(point, light, weight);
-    if (point.material->has_reflection || point.material->has_transmission) branch(point, weight, allowance, level);
+    sum_ += weight * scene_.ambient * material.ambient.at(point.surface);
+    if (material.has_diffuse || material.has_highlight)
+      for (const Light& light : scene_.lights) add_light(point, light, weight, boundary.before);
+    if (material.has_reflection || material.has_transmission) branch(point, boundary, weight, ray.allowance, ray.level);
   }
 
-  void add_light(const ShadingPoint& point, const Light& light, Rgb weight) {
+  /// What arrives of a light's rays at a point that lies in `media`.
+  Rgb unshadowed_share(const Vec3f& origin, const LocalLight& local, MediaId media) {
+    count(RayKind::shadow);
+    if (!intersector_.occluded_one(origin, local.direction, local.distance))
+      return media_ ? media_->transmitted(media, local.distance) : Rgb(1);
+    if (!scene_.transparent_shadows) return Rgb();
+    ShadowPath path(origin, local.direction, local.distance, media);
+    Hit hit;
+    do {
+      count(RayKind::shadow);
+      hit = intersector_.intersect_one(path.origin, path.direction, path.distance);
+    } while (follow_shadow(scene_, media_ ? &*media_ : nullptr, hit, path));
+    return path.transmittance;
+  }
+
+  void add_light(const ShadingPoint& point, const Light& light, Rgb weight, MediaId media) {
     const LocalLight local = local_light(point, light, settings_.highlights);
     if (!local.lit) return;
-    const Rgb shadowed = settings_.shadowed_highlights ? local.diffuse + local.highlight : local.diffuse;
+    Rgb shadowed = settings_.shadowed_highlights ? local.diffuse + local.highlight : local.diffuse;
     if (!settings_.shadowed_highlights) sum_ += weight * local.highlight;
     if (is_black(shadowed)) return;
-    if (settings_.shadows) {
-      count(RayKind::shadow);
-      const Vec3f origin = offset_origin(point.surface, point.surface.geometric_normal);
-      if (intersector_.occluded_one(origin, local.direction, local.distance)) return;
-    }
+    if (settings_.shadows)
+      shadowed *= unshadowed_share(offset_origin(point.surface, point.surface.geometric_normal), local, media);
     sum_ += weight * shadowed;
   }
 
-  void branch(const ShadingPoint& point, Rgb weight, float allowance, int level) {
+  void branch(const ShadingPoint& point, const MediaBoundary& boundary, Rgb weight, float allowance, int level) {
     if (level >= settings_.depth) return;
-    const Branches children = branches(point);
+    const Branches children = media_ ? branches_between(point, boundary.relative_index) : branches(point);
     const Rgb below = scene_.bound(settings_.depth - level - 1);
     struct Child {
       Rgb weight;
@@ -98,8 +144,8 @@ class Tracer {
       rest -= share;
       const Vec3f side = one->refracted ? -point.surface.geometric_normal : point.surface.geometric_normal;
       count(one->refracted ? RayKind::refracted : RayKind::reflected);
-      trace(offset_origin(point.surface, side), one->refracted ? children.refracted : children.reflected, one->weight,
-            share, level + 1);
+      trace({offset_origin(point.surface, side), one->refracted ? children.refracted : children.reflected, one->weight,
+             share, level + 1, one->refracted ? boundary.after : boundary.before});
     }
   }
 
@@ -107,6 +153,7 @@ class Tracer {
   const EmbreeIntersector& intersector_;
   const RenderSettings& settings_;
   bool wants_texture_ = false;
+  std::optional<MediaTable> media_;
   Rgb sum_;
 };
 

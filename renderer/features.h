@@ -21,6 +21,11 @@ struct Features {
   bool uneven_lights = kOptionalFeatures;  ///< falloff and cones
   bool halfway_highlights = kOptionalFeatures;
   bool instances = kOptionalFeatures;
+  bool tabled_highlights = kOptionalFeatures;  ///< weights by angle
+  bool transparent_shadows = kOptionalFeatures;
+  bool absorption = kOptionalFeatures;
+  bool special_optics = kOptionalFeatures;  ///< thin sheets and conductors
+  bool media = kOptionalFeatures;           ///< overlapping media by priority
 };
 inline constexpr Features kFeatures;
 

@@ -1,7 +1,13 @@
 #include "renderer/material.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace raytree {
 namespace {
+
+constexpr double kRadians = 3.14159265358979323846 / 180;
 
 Pattern make_pattern(const ColorPattern& description, const Vec3d& scene_origin) {
   Pattern pattern;
@@ -37,11 +43,34 @@ Pattern make_pattern(const ColorPattern& description, const Vec3d& scene_origin)
 
 }  // namespace
 
+std::string material_problem(const MaterialDescription& description) {
+  if (description.conductor && !is_black(description.transmission))
+    return "a conductor transmits nothing: transmission must be 0";
+  if (description.thin && !is_black(description.absorption))
+    return "a thin sheet has no inside that could absorb: put its color into transmission";
+  const std::vector<AngleWeight>& table = description.highlight.weight_by_angle;
+  if (!table.empty() && !is_black(description.highlight.weight))
+    return "give either weight or weight_by_angle of the highlight, not both";
+  for (std::size_t i = 1; i < table.size(); ++i)
+    if (!(table[i].angle > table[i - 1].angle))
+      return fmt::format("weight_by_angle: angle {} does not lie above the one before it, {}", table[i].angle,
+                         table[i - 1].angle);
+  return {};
+}
+
 Material make_material(const MaterialDescription& description, bool fresnel, const Vec3d& scene_origin) {
   Material material;
   material.diffuse = make_pattern(description.diffuse, scene_origin);
   material.ambient = description.ambient ? make_pattern(*description.ambient, scene_origin) : material.diffuse;
   material.highlight = description.highlight.weight;
+  if (const auto& table = description.highlight.weight_by_angle; !table.empty()) {
+    material.tabled_highlight = true;
+    material.highlight = Rgb();
+    for (const AngleWeight& point : table) {
+      material.highlight_table.points.push_back({static_cast<float>(point.angle * kRadians), point.weight});
+      material.highlight = max(material.highlight, point.weight);
+    }
+  }
   material.exponent = static_cast<float>(description.highlight.exponent);
   material.reflection = description.reflection;
   material.transmission = description.transmission;
@@ -52,10 +81,34 @@ Material make_material(const MaterialDescription& description, bool fresnel, con
   material.has_highlight = !is_black(material.highlight);
   material.has_reflection = !is_black(material.reflection);
   material.has_transmission = !is_black(material.transmission);
-  material.fresnel = fresnel;
+  material.conductor = description.conductor;
+  material.thin = description.thin && material.has_transmission;
+  material.special_optics = material.conductor || material.thin;
+  material.has_reflection |= material.conductor;  // (1 - cos)^5 is left of a black k_s
+  material.fresnel = fresnel && !material.conductor;
+  material.has_inside = material.has_transmission && !material.thin;
+  material.absorption = description.absorption;
+  material.absorbs = material.has_inside && !is_black(material.absorption);
+  material.priority = description.priority;
+  const Rgb& k_t = material.transmission;
+  material.shadow_transmission = {std::min(k_t.r, 1.0f), std::min(k_t.g, 1.0f), std::min(k_t.b, 1.0f)};
   material.needs_texture = (material.diffuse.varies && material.diffuse.over_texture) ||
                            (material.ambient.varies && material.ambient.over_texture);
   return material;
+}
+
+Rgb HighlightTable::at(float cosine) const {
+  const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f));
+  const auto above = std::upper_bound(points.begin(), points.end(), angle,
+                                      [](float value, const Point& point) { return value < point.angle; });
+  if (above == points.begin()) return points.front().weight;
+  if (above == points.end()) return points.back().weight;
+  const Point& below = *(above - 1);
+  return mix(below.weight, above->weight, (angle - below.angle) / (above->angle - below.angle));
+}
+
+Rgb transmitted_share(const Rgb& absorption, float distance) {
+  return {std::exp(-absorption.r * distance), std::exp(-absorption.g * distance), std::exp(-absorption.b * distance)};
 }
 
 }  // namespace raytree

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "geometry/surface.h"
 #include "renderer/color.h"
@@ -34,10 +36,22 @@ struct Pattern {
   }
 };
 
+/// W of eq. 4.5 over the angle of incidence.
+struct HighlightTable {
+  struct Point {
+    float angle;  ///< radians
+    Rgb weight;
+  };
+  std::vector<Point> points;  ///< by rising angle
+
+  /// Linear between the points, constant beyond them.
+  Rgb at(float cosine) const;
+};
+
 struct Material {
   Pattern diffuse;     ///< k_d
   Pattern ambient;     ///< share of the ambient light
-  Rgb highlight;       ///< W
+  Rgb highlight;       ///< W; of a table, the largest
   float exponent = 1;  ///< n
   Rgb reflection;      ///< k_s
   Rgb transmission;    ///< k_t
@@ -47,7 +61,24 @@ struct Material {
   bool ambient_as_diffuse = true;  ///< the ambient pattern is the diffuse one
   bool fresnel = false;            ///< k_s F and k_t (1 - F)
   bool needs_texture = false;      ///< some pattern looks at texture coordinates
+
+  bool special_optics = false;    ///< thin or a conductor
+  bool conductor = false;         ///< k_s rises to 1 by Schlick's formula
+  bool thin = false;              ///< a sheet without an inside
+  bool has_inside = false;        ///< transmits and is not thin
+  bool absorbs = false;           ///< has an inside that is not clear
+  bool tabled_highlight = false;  ///< W by highlight_table
+  int priority = 0;               ///< among overlapping media
+  Rgb absorption;                 ///< a of exp(-a t) inside
+  Rgb shadow_transmission;        ///< of one crossing by a shadow ray: k_t, at most 1
+  HighlightTable highlight_table;
 };
+
+/// exp(-a t): what of light is left after `distance` (finite) in a medium (Beer and Lambert).
+Rgb transmitted_share(const Rgb& absorption, float distance);
+
+/// What is wrong with a material as a whole, for the message of an Error; empty: nothing.
+std::string material_problem(const MaterialDescription& description);
 
 /// `scene_origin`: see ShapeSet::origin. `fresnel`: the scene's switch.
 Material make_material(const MaterialDescription& description, bool fresnel, const Vec3d& scene_origin);

@@ -18,7 +18,9 @@ constexpr float kLargest = std::numeric_limits<float>::max();
 Rgb at_most_largest(Rgb c) { return {std::min(c.r, kLargest), std::min(c.g, kLargest), std::min(c.b, kLargest)}; }
 
 Rgb largest_recursion(const Material& material) {
-  // With Fresnel the weights are k_s F and k_t (1 - F): a mean of k_s and k_t, at most the larger.
+  // Schlick's formula rises to 1; a conductor transmits nothing.
+  if (material.conductor) return max(material.reflection, Rgb(1));
+  // With Fresnel the weights are k_s F and k_t (1 - F), F in [0, 1], of a thin sheet too: a mean, at most the larger.
   return material.fresnel ? max(material.reflection, material.transmission)
                           : material.reflection + material.transmission;
 }

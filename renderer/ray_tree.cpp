@@ -4,15 +4,20 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "renderer/features.h"
+#include "renderer/media.h"
 #include "renderer/shading.h"
+#include "renderer/shadow_path.h"
 
 namespace raytree {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -21,18 +26,20 @@ struct PendingRay {
   Vec3f origin;
   float allowance;  ///< what may still be cut off below it, radiance
   Vec3f direction;
-  std::uint32_t sample;  ///< in the chunk
+  std::uint16_t sample;  ///< in the chunk
+  MediaId media;         ///< that it is in, where media are tracked
   Rgb weight;            ///< of what it brings in its sample
   std::uint32_t level;   ///< the eye ray is 1
 };
 static_assert(sizeof(PendingRay) == 48);
+static_assert(kBatchSize <= std::size_t(1) << 16);
 
 /// A hit of the batch under way, with the context of its ray.
 struct BatchPoint {
   ShadingPoint shading;
   Rgb weight;
   float allowance;
-  std::uint32_t sample;
+  std::uint16_t sample;
   std::uint32_t level;
 };
 
@@ -79,6 +86,12 @@ struct SampleTracer::State {
     refracted_rays.reserve(kBatchSize);
     for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
     instanced = !scene.shapes->instances.empty();
+    if (follows_shadows()) shadow_paths.emplace(scene, kBatchSize);
+    if (tracks_media()) {
+      media.emplace(scene);
+      boundaries.resize(kBatchSize);
+      shadow_media.resize(kBatchSize);
+    }
     results.radiance.resize(kBatchSize);
     results.truncation.resize(records.truncation ? kBatchSize : 0);
     results.ray_counts.resize(records.ray_counts ? kBatchSize : 0);
@@ -87,13 +100,21 @@ struct SampleTracer::State {
 
   bool trace(std::span<const Vec2f> positions);
   void begin_sample(std::size_t i, const Vec2f& position);
+  bool tracks_media() const { return kFeatures.media && scene.tracks_media; }
+  bool follows_shadows() const { return kFeatures.transparent_shadows && scene.transparent_shadows; }
   bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
   void trace_batch(Coherence coherence, bool eye);
-  void collect_hits(bool eye);
+  void collect_hits();
   void prefetch_triangles(const ShapeSet& shapes) const;
   std::span<const BatchPoint> batch_points() const { return {points.data(), point_count}; }
+  void find_eye_media(std::span<const Vec2f> positions);
+  bool passes(BatchPoint& point, MediaBoundary& boundary, const PendingRay& ray, const Hit& hit);
+  Rgb escaping_weight(const PendingRay& ray) const { return ray.weight * media->transmitted(ray.media, kInfinity); }
   void add_lights();
+  void follow_shadows(std::size_t count);
   void spawn();
+  MediaId media_before(std::size_t p) const { return tracks_media() ? boundaries[p].before : kNoMedia; }
+  MediaId media_after(std::size_t p) const { return tracks_media() ? boundaries[p].after : kNoMedia; }
   void cut(std::uint32_t sample, const Rgb& bound);
   void add_children(RayKind kind, std::vector<PendingRay>& children);
   void record_first_hit(const BatchPoint& point, std::uint32_t object, std::uint32_t material);
@@ -114,8 +135,9 @@ struct SampleTracer::State {
 
   std::vector<PendingRay> eye_rays;      ///< contexts of the chunk's eye rays
   const PendingRay* contexts = nullptr;  ///< [rays.size] of the batch under way; read before children are spawned
-  std::vector<std::uint32_t> hit_rays;   ///< [point_count] index in the batch of each hit
-  std::size_t point_count = 0;
+  std::vector<std::uint32_t> hit_rays;   ///< [hit_count] index in the batch of each hit
+  std::size_t hit_count = 0;
+  std::size_t point_count = 0;      ///< hit_count, less the surfaces that separate nothing
   std::vector<BatchPoint> points;   ///< hits of the batch under way
   std::vector<PendingRay> pending;  ///< the newest rays are traced first
   /// What the batch under way spawns, before it joins the pending rays: apart, so that neighbours in a packet run much
@@ -124,19 +146,32 @@ struct SampleTracer::State {
 
   bool wants_texture = false;
   bool instanced = false;  ///< the scene has instances
+
+  /// Where something transmits and shadows show it.
+  std::optional<ShadowPaths> shadow_paths;
+
+  // Where media are tracked:
+  std::optional<MediaTable> media;
+  std::vector<Solid> eye_solids;  ///< that a perspective eye lies in
+  bool knows_eye_solids = false;
+  std::vector<MediaBoundary> boundaries;  ///< [point_count] what each point separates
+  std::vector<MediaId> shadow_media;      ///< that shadow rays start in
+  std::vector<PendingRay> passed_rays;    ///< that met a surface which separates nothing
 };
 
 void SampleTracer::State::begin_sample(std::size_t i, const Vec2f& position) {
   Vec3f origin, direction;
   scene.camera.ray(position.x, position.y, origin, direction);
-  rays.set(i, origin, direction, std::numeric_limits<float>::infinity());
-  eye_rays[i] = {origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint32_t>(i), Rgb(1), 1};
+  rays.set(i, origin, direction, kInfinity);
+  eye_rays[i] = {
+      origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint16_t>(i), kNoMedia, Rgb(1), 1};
   results.radiance[i] = Rgb();
 }
 
 /// Traces the eye rays of up to kBatchSize samples and all that grows from them. False: stopped.
 bool SampleTracer::State::trace(std::span<const Vec2f> positions) {
   for (std::size_t i = 0; i < positions.size(); ++i) begin_sample(i, positions[i]);
+  if (tracks_media()) find_eye_media(positions);
   std::fill(results.truncation.begin(), results.truncation.end(), Rgb());
   std::fill(results.ray_counts.begin(), results.ray_counts.end(), 1u);
   std::fill(results.first_hits.begin(), results.first_hits.end(), FirstHit());
@@ -152,7 +187,7 @@ bool SampleTracer::State::trace(std::span<const Vec2f> positions) {
     contexts = pending.data() + pending.size() - count;
     for (std::size_t i = 0; i < count; ++i) {
       const PendingRay& ray = contexts[i];
-      rays.set(i, ray.origin, ray.direction, std::numeric_limits<float>::infinity());
+      rays.set(i, ray.origin, ray.direction, kInfinity);
       if (kFeatures.ray_count_channel && records.ray_counts) ++results.ray_counts[ray.sample];
     }
     rays.size = count;
@@ -166,12 +201,13 @@ void SampleTracer::State::trace_batch(Coherence coherence, bool eye) {
   scene.intersector->intersect(rays, coherence, hits);
   const auto hit = Clock::now();
   const double intersection_before = statistics.intersection_seconds;
-  collect_hits(eye);
+  collect_hits();
   if (!eye) pending.resize(pending.size() - rays.size);
   add_lights();
   spawn();
   add_children(RayKind::reflected, reflected_rays);
   add_children(RayKind::refracted, refracted_rays);
+  if (tracks_media()) add_children(RayKind::refracted, passed_rays);
   const double shadow_seconds = statistics.intersection_seconds - intersection_before;
   statistics.shading_seconds += seconds_since(hit) - shadow_seconds;
   statistics.intersection_seconds += std::chrono::duration<double>(hit - start).count();
@@ -186,27 +222,29 @@ void SampleTracer::State::add_children(RayKind kind, std::vector<PendingRay>& ch
   children.clear();
 }
 
-void SampleTracer::State::collect_hits(bool eye) {
+void SampleTracer::State::collect_hits() {
   const ShapeSet& shapes = *scene.shapes;
-  point_count = 0;
+  hit_count = 0;
   for (std::size_t i = 0; i < rays.size; ++i) {
     if (hits.geometry[i] != kNoGeometry) {
-      hit_rays[point_count++] = static_cast<std::uint32_t>(i);
+      hit_rays[hit_count++] = static_cast<std::uint32_t>(i);
       continue;
     }
     const PendingRay& ray = contexts[i];
     // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
     const Vec3f poison = (ray.origin + ray.direction) * 0.0f;
     results.radiance[ray.sample] +=
-        ray.weight * scene.background.along(ray.direction) + Rgb(poison.x + poison.y + poison.z);
+        (tracks_media() ? escaping_weight(ray) : ray.weight) * scene.background.along(ray.direction) +
+        Rgb(poison.x + poison.y + poison.z);
   }
   prefetch_triangles(shapes);
 
-  for (std::size_t p = 0; p < point_count; ++p) {
-    const std::size_t i = hit_rays[p];
+  point_count = 0;
+  for (std::size_t h = 0; h < hit_count; ++h) {
+    const std::size_t i = hit_rays[h];
     const PendingRay& ray = contexts[i];
     const Hit hit = hits[i];
-    BatchPoint& point = points[p];
+    BatchPoint& point = points[point_count];
     std::uint32_t object;
     if (kFeatures.instances && instanced && hit.instance != kNoInstance) {
       object = shapes.instances[hit.instance].object;
@@ -222,14 +260,46 @@ void SampleTracer::State::collect_hits(bool eye) {
     point.allowance = ray.allowance;
     point.sample = ray.sample;
     point.level = ray.level;
-    if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && !eye)
+    if (kFeatures.absorption && material.absorbs && point.shading.leaving && !tracks_media())
+      point.weight *= transmitted_share(material.absorption, point.shading.surface.distance);
+    if (tracks_media() && passes(point, boundaries[point_count], ray, hit)) continue;
+    if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && ray.level > 1)
       point.weight *=
           segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);
     results.radiance[ray.sample] +=
         point.weight * scene.ambient *
         (material.ambient_as_diffuse ? point.shading.diffuse : material.ambient.at(point.shading.surface));
-    if (kFeatures.first_hit_channels && eye && records.first_hits) record_first_hit(point, object, material_index);
+    if (kFeatures.first_hit_channels && ray.level == 1 && records.first_hits)
+      record_first_hit(point, object, material_index);
+    ++point_count;
   }
+}
+
+/// The sets of the chunk's eye rays. Parallel eye rays start in places of their own.
+[[gnu::noinline]] void SampleTracer::State::find_eye_media(std::span<const Vec2f> positions) {
+  media->clear();
+  if (scene.camera.is_perspective()) {
+    if (!knows_eye_solids) eye_solids = solids_around(scene, scene.camera.position(), scene.camera.forward());
+    knows_eye_solids = true;
+    const MediaId set = media->set_of(eye_solids);
+    for (std::size_t i = 0; i < positions.size(); ++i) eye_rays[i].media = set;
+  } else {
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      eye_rays[i].media = media->set_of(solids_around(scene, eye_rays[i].origin, eye_rays[i].direction));
+  }
+}
+
+/// What a point's surface separates. True: nothing; the ray goes on behind it, at its level.
+[[gnu::noinline]] bool SampleTracer::State::passes(BatchPoint& point, MediaBoundary& boundary, const PendingRay& ray,
+                                                   const Hit& hit) {
+  const SurfacePoint& surface = point.shading.surface;
+  boundary = media->boundary(ray.media, solid_at(scene, hit), point.shading.leaving);
+  point.weight *= media->transmitted(boundary.before, surface.distance);
+  if (!boundary.passes) return false;
+  if (records.first_hits && ray.level == 1) results.first_hits[ray.sample].distance += surface.distance;
+  passed_rays.push_back({offset_origin(surface, -surface.geometric_normal), ray.allowance, ray.direction, ray.sample,
+                         boundary.after, point.weight, ray.level});
+  return true;
 }
 
 /// The vertices of the batch's triangles lie anywhere in memory: all are asked for before the first is used.
@@ -237,8 +307,8 @@ void SampleTracer::State::prefetch_triangles(const ShapeSet& shapes) const {
   const bool any_instances = kFeatures.instances && instanced;
   if (shapes.meshes.empty() && !any_instances) return;
   const auto for_each_triangle = [&](auto&& function) {
-    for (std::size_t p = 0; p < point_count; ++p) {
-      const std::size_t i = hit_rays[p];
+    for (std::size_t h = 0; h < hit_count; ++h) {
+      const std::size_t i = hit_rays[h];
       if (hits.geometry[i] < kFirstMeshGeometry) continue;
       const BoundedShapes& list = any_instances && hits.instance[i] != kNoInstance
                                       ? shapes.groups[shapes.instances[hits.instance[i]].group]
@@ -278,6 +348,7 @@ void SampleTracer::State::add_lights() {
       shadow_rays.set(count, origin, local.direction, local.distance);
       shadow_samples[count] = point.sample;
       shadow_light[count] = point.weight * shadowed;
+      if (tracks_media()) shadow_media[count] = boundaries[static_cast<std::size_t>(&point - points.data())].before;
       ++count;
     }
     if (count == 0) continue;
@@ -286,6 +357,7 @@ void SampleTracer::State::add_lights() {
     scene.intersector->occluded(shadow_rays, Coherence::coherent, occluded.data());
     statistics.intersection_seconds += seconds_since(start);
     statistics.rays[static_cast<int>(RayKind::shadow)] += count;
+    if (follows_shadows() || tracks_media()) follow_shadows(count);
     for (std::size_t i = 0; i < count; ++i)
       if (!occluded[i]) results.radiance[shadow_samples[i]] += shadow_light[i];
     if (kFeatures.ray_count_channel && records.ray_counts)
@@ -293,12 +365,37 @@ void SampleTracer::State::add_lights() {
   }
 }
 
+/// Adds what comes through the shadows of what transmits, and takes from the other rays what their medium absorbs.
+[[gnu::noinline]] void SampleTracer::State::follow_shadows(std::size_t count) {
+  const auto start = Clock::now();
+  if (shadow_paths) shadow_paths->clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    const MediaId set = tracks_media() ? shadow_media[i] : kNoMedia;
+    if (occluded[i]) {
+      if (shadow_paths) shadow_paths->add(shadow_rays, i, set);
+    } else if (tracks_media()) {
+      shadow_light[i] *= media->transmitted(set, shadow_rays.max_distance[i]);
+    }
+  }
+  if (!shadow_paths) return;
+  shadow_paths->follow(tracks_media() ? &*media : nullptr);
+  for (const ShadowPath& path : shadow_paths->paths()) {
+    const std::uint32_t sample = shadow_samples[path.ray];
+    results.radiance[sample] += shadow_light[path.ray] * path.transmittance;
+    statistics.rays[static_cast<int>(RayKind::shadow)] += path.queries;
+    if (kFeatures.ray_count_channel && records.ray_counts) results.ray_counts[sample] += path.queries;
+  }
+  statistics.intersection_seconds += seconds_since(start);
+}
+
 void SampleTracer::State::spawn() {
   std::uint64_t branches_at_limit = 0;
   for (const BatchPoint& point : batch_points()) {
     const Material& material = *point.shading.material;
     if (!material.has_reflection && !material.has_transmission) continue;
-    const Branches children = branches(point.shading);
+    const std::size_t p = static_cast<std::size_t>(&point - points.data());
+    const Branches children =
+        tracks_media() ? branches_between(point.shading, boundaries[p].relative_index) : branches(point.shading);
     const Rgb reflected_weight = point.weight * children.reflected_weight;
     const Rgb refracted_weight = point.weight * children.refracted_weight;
     const bool reflects = !is_black(reflected_weight), refracts = !is_black(refracted_weight);
@@ -317,14 +414,15 @@ void SampleTracer::State::spawn() {
         cut(point.sample, reflected_bound);
       else
         reflected_rays.push_back({offset_origin(surface, surface.geometric_normal), shares.reflected,
-                                  children.reflected, point.sample, reflected_weight, point.level + 1});
+                                  children.reflected, point.sample, media_before(p), reflected_weight,
+                                  point.level + 1});
     }
     if (refracts) {
       if (shares.cuts_refracted)
         cut(point.sample, refracted_bound);
       else
         refracted_rays.push_back({offset_origin(surface, -surface.geometric_normal), shares.refracted,
-                                  children.refracted, point.sample, refracted_weight, point.level + 1});
+                                  children.refracted, point.sample, media_after(p), refracted_weight, point.level + 1});
     }
   }
   statistics.branches_at_depth_limit += branches_at_limit;
@@ -337,7 +435,9 @@ void SampleTracer::State::cut(std::uint32_t sample, const Rgb& bound) {
 
 void SampleTracer::State::record_first_hit(const BatchPoint& point, std::uint32_t object, std::uint32_t material) {
   const SurfacePoint& surface = point.shading.surface;
-  results.first_hits[point.sample] = {surface.distance, surface.shading_normal, point.shading.diffuse, object + 1,
+  // What the eye ray has passed through is in the distance already.
+  const float distance = results.first_hits[point.sample].distance + surface.distance;
+  results.first_hits[point.sample] = {distance, surface.shading_normal, point.shading.diffuse, object + 1,
                                       material + 1};
 }
 

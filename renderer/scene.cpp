@@ -31,12 +31,20 @@ const CameraDescription& chosen_camera(const SceneDescription& scene, const std:
   throw Error(ErrorKind::bad_input, {scene.name, 0, "cameras"}, "no camera \"" + name + "\"; cameras: " + choices);
 }
 
+SourceLocation place_of(const SceneDescription& scene, const MaterialDescription& material) {
+  return {scene.name, 0, "materials." + material.name};
+}
+
 /// Materials in the description's order, then the default one where some shape names none.
 void resolve_materials(const SceneDescription& scene, const Vec3d& origin, Scene& result) {
   const auto make = [&](const MaterialDescription& description) {
     result.materials.push_back(make_material(description, description.fresnel.value_or(scene.render.fresnel), origin));
   };
-  for (const MaterialDescription& material : scene.materials) make(material);
+  for (const MaterialDescription& material : scene.materials) {
+    if (const std::string problem = material_problem(material); !problem.empty())
+      throw Error(ErrorKind::bad_input, place_of(scene, material), problem);
+    make(material);
+  }
   const auto fallback = static_cast<std::uint32_t>(scene.materials.size());
   const auto resolve = [&](const ShapeDescription& shape) {
     if (shape.material.empty() && !group_used_by(shape).empty()) {
@@ -84,7 +92,13 @@ std::vector<std::string> features_in_use(const Scene& scene) {
     if (material.fresnel && (material.has_reflection || material.has_transmission)) features.insert("fresnel");
     if (material.diffuse.varies || material.ambient.varies) features.insert("checker patterns");
     if (material.needs_texture) features.insert("texture coordinates");
+    if (material.tabled_highlight) features.insert("highlights by angle");
+    if (material.conductor) features.insert("conductors");
+    if (material.thin) features.insert("thin sheets");
+    if (material.absorbs) features.insert("absorption");
   }
+  if (scene.transparent_shadows && !scene.lights.empty()) features.insert("transparent shadows");
+  if (scene.tracks_media) features.insert("media by priority");
   if (render.shadows && !scene.lights.empty()) features.insert("shadows");
   for (const Light& light : scene.lights) {
     if (light.falloff != Falloff::none) features.insert("light falloff");
@@ -167,12 +181,12 @@ void warn_of_open_glass(const Scene& scene, Warnings& warnings) {
   const std::vector<const ShapeDescription*> shapes = all_shapes(scene.description);
   const auto check = [&](const BoundedShapes& list) {
     for (const MeshEntry& entry : list.meshes) {
-      const bool transmits =
-          scene.materials[scene.shape_materials[entry.shape]].has_transmission ||
-          std::any_of(entry.triangle_tags.begin(), entry.triangle_tags.end(), [&](std::uint32_t tag) {
-            return tag != kNoTag && scene.materials[tag].has_transmission && !scene.description.materials[tag].thin;
-          });
-      if (!transmits) continue;
+      const std::uint32_t own = scene.shape_materials[entry.shape];
+      const bool has_inside =
+          scene.materials[own].has_inside ||
+          std::any_of(entry.triangle_tags.begin(), entry.triangle_tags.end(),
+                      [&](std::uint32_t tag) { return tag != kNoTag && scene.materials[tag].has_inside; });
+      if (!has_inside) continue;
       if (const std::int64_t open = count_open_edges(entry.mesh); open > 0)
         warnings.push_back(
             {shapes[entry.shape]->where, "a refractive mesh that is not closed has no inside: open edges", open});
@@ -180,6 +194,27 @@ void warn_of_open_glass(const Scene& scene, Warnings& warnings) {
   };
   check(*scene.shapes);
   for (const BoundedShapes& group : scene.shapes->groups) check(group);
+}
+
+/// Where k_s + k_t exceeds 1, levels of the tree add light to light, and the bound that the cutoff rests on grows.
+void warn_of_more_light_than_arrives(const Scene& scene, Warnings& warnings) {
+  const std::vector<MaterialDescription>& described = scene.description.materials;
+  for (const std::uint32_t i : materials_in_use(scene)) {
+    if (i >= described.size()) continue;  // the default material
+    const Material& material = scene.materials[i];
+    // The largest that float makes of parts that add up to 1 as written.
+    constexpr float kOne = 1 + 4 * 0x1p-24f;
+    if (material.fresnel || material.conductor) {
+      if (max_channel(max(material.reflection, material.transmission)) > kOne)
+        warnings.push_back({place_of(scene.description, described[i]),
+                            "returns more light than arrives: reflection or transmission exceeds 1"});
+    } else if (max_channel(material.reflection + material.transmission) > kOne) {
+      warnings.push_back(
+          {place_of(scene.description, described[i]),
+           "returns more light than arrives: reflection + transmission exceed 1; Fresnel's weights would "
+           "not (\"fresnel\": true)"});
+    }
+  }
 }
 
 /// Bytes a triangle or sphere takes in the intersector, measured (docs/architecture.md): an estimate for `info`.
@@ -238,6 +273,13 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   scene.bound =
       RadianceBound(scene.materials, scene.lights, scene.background, scene.ambient, scene.description.render.depth);
 
+  for (const std::uint32_t index : materials_in_use(scene)) {
+    const Material& material = scene.materials[index];
+    const RenderSettings& render = scene.description.render;
+    scene.transparent_shadows |= render.shadows && render.transparent_shadows && material.has_transmission;
+    scene.tracks_media |= material.has_inside && material.priority != 0;
+  }
+
   if (scene.description.render.antialias.method == Antialiasing::Method::whitted)
     scene.small_objects =
         SmallObjects(*scene.shapes, scene.camera, scene.description.image.width, scene.description.image.height);
@@ -261,6 +303,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   scene.summary.features = features_in_use(scene);
   scene.summary.intersector_bytes = estimated_intersector_bytes(scene.summary);
   warn_of_open_glass(scene, warnings);
+  warn_of_more_light_than_arrives(scene, warnings);
   scene.seconds.load = seconds_since(start);
   if (!options.build) return scene;
 

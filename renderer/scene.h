@@ -96,6 +96,10 @@ class Scene {
   Rgb ambient;
   Camera camera;
   RadianceBound bound;
+  bool transparent_shadows = false;  ///< light is to be followed through what transmits, and something does
+  bool tracks_media = false;         ///< overlapping media are told apart by priority, and some material sets one
+  SmallObjects small_objects;        ///< as the camera sees them; none unless the anti-aliasing asks for them
+
   /// Index into materials of what a hit shows: the instance's, or else the triangle's own, or else the shape's.
   std::uint32_t material_at(const Hit& hit) const {
     if (hit.instance == kNoInstance) return own_material(*shapes, shapes->shape_of(hit.geometry, hit.primitive), hit);
@@ -105,8 +109,6 @@ class Scene {
     const BoundedShapes& group = shapes->groups[instance.group];
     return own_material(group, group.bounded_shape_of(hit.geometry, hit.primitive), hit);
   }
-
-  SmallObjects small_objects;  ///< as the camera sees them; none unless the anti-aliasing asks for them
 
  private:
   std::uint32_t own_material(const BoundedShapes& list, ShapeId shape, const Hit& hit) const {

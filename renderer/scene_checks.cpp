@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "renderer/groups.h"
+#include "renderer/material.h"
 #include "renderer/suggestion.h"
 
 namespace raytree::reading {
@@ -33,6 +34,10 @@ void check(const Place& at, std::int64_t line, const ShapeDescription& shape) {
   if (scatter == nullptr) return;
   if (scatter->least_scale > scatter->largest_scale) at.fail(line, "least_scale is larger than largest_scale");
   if (scatter->lowest > scatter->highest) at.fail(line, "lowest lies above highest");
+}
+
+void check(const Place& at, std::int64_t line, const MaterialDescription& material) {
+  if (const std::string problem = material_problem(material); !problem.empty()) at.fail(line, problem);
 }
 
 void check_references(const Place& root, const SceneDescription& scene) {

@@ -12,6 +12,7 @@ namespace raytree::reading {
 void check(const Place&, std::int64_t, const auto&) {}
 void check(const Place& at, std::int64_t line, const ImageDescription& image);
 void check(const Place& at, std::int64_t line, const CameraDescription& camera);
+void check(const Place& at, std::int64_t line, const MaterialDescription& material);
 
 void check(const Place& at, std::int64_t line, const ShapeDescription& shape);
 

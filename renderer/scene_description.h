@@ -66,6 +66,7 @@ struct RenderSettings {
   AdaptiveSampling adaptive;
   HighlightForm highlights = HighlightForm::reflected;
   bool shadows = true;
+  bool transparent_shadows = true;  ///< what transmits lets light through its shadow, straight on
   bool shadowed_highlights =
       true;              ///< a shadow takes the highlight too (a departure from Whitted, who names the diffuse term)
   bool fresnel = false;  ///< k_s F and k_t (1 - F) in place of constant k_s and k_t
@@ -119,9 +120,17 @@ struct CheckerPattern {
 };
 using ColorPattern = std::variant<Rgb, CheckerPattern>;
 
+/// W(i) of Phong's eq. 4.5 at one angle of incidence.
+struct AngleWeight {
+  double angle = 0;  ///< between the light and the normal, degrees, [0, 90]
+  Rgb weight{0, 0, 0};
+};
+
 struct HighlightDescription {
   Rgb weight{0, 0, 0};   ///< W of Phong's eq. 4.5, multiplied by the light's color
   double exponent = 20;  ///< n, >= 1
+  /// W(i) in place of `weight`: linear between these points, whose angles rise; constant beyond them. Empty: `weight`.
+  std::vector<AngleWeight> weight_by_angle;
 };
 
 /// Coefficients of Whitted's eq. 2. Side is decided by the geometric normal; outside has index 1.
@@ -135,6 +144,10 @@ struct MaterialDescription {
   double index_of_refraction = 1.5;  ///< of the inside over the outside, > 0
   /// Whether k_s and k_t follow Fresnel by angle; default: as RenderSettings::fresnel says.
   std::optional<bool> fresnel;
+  bool conductor = false;   ///< k_s is the reflectance at normal incidence and rises to 1 by Schlick's formula
+  Rgb absorption{0, 0, 0};  ///< a of exp(-a t) inside, per scene unit
+  bool thin = false;        ///< a sheet without an inside: transmits without bending
+  int priority = 0;         ///< among overlapping media the highest is there; 0 everywhere: media are not tracked
 };
 
 // --- shapes -------------------------------------------------------------------------------------------------

@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/builtin_materials.h"
 #include "renderer/scene_description.h"
 
 namespace raytree {
@@ -200,6 +201,11 @@ struct SceneVersion {
   int value = kSceneVersion;
 };
 
+/// The key "from" of a material: its values are there before those of the other keys. Never kept.
+struct MaterialBase {
+  std::string name;
+};
+
 /// Three factors, in a file also one number for all three.
 struct ScaleFactors {
   Vec3d value{1, 1, 1};
@@ -282,6 +288,10 @@ void visit_fields(Visitor& visit, T& render) {
   visit(Field{.key = "adaptive", .text = "How \"whitted\" divides pixels"}, render.adaptive);
   visit(Field{.key = "highlights", .text = "Form of the highlight"}, render.highlights);
   visit(Field{.key = "shadows", .text = "Whether things cast shadows"}, render.shadows);
+  visit(Field{.key = "transparent_shadows",
+              .text = "Whether light passes through what transmits, straight on: k_t for each surface that it crosses, "
+                      "and absorption inside"},
+        render.transparent_shadows);
   visit(Field{.key = "shadowed_highlights",
               .text = "Whether a shadow takes the highlight too (Whitted names the diffuse term only)"},
         render.shadowed_highlights);
@@ -389,6 +399,17 @@ void visit_fields(Visitor& visit, T& checker) {
   visit(Field{.key = "offset", .text = "Where a corner of an even square lies", .unit = "as size"}, checker.offset);
 }
 
+template <class Visitor, Is<AngleWeight> T>
+void visit_fields(Visitor& visit, T& point) {
+  visit(Field{.key = "angle",
+              .text = "Of incidence, between the light and the normal",
+              .unit = "degrees",
+              .range = {0, 90},
+              .required = true},
+        point.angle);
+  visit(Field{.key = "weight", .text = "W at this angle", .range = kNotNegative, .required = true}, point.weight);
+}
+
 template <class Visitor, Is<HighlightDescription> T>
 void visit_fields(Visitor& visit, T& highlight) {
   visit(Field{.key = "weight", .text = "W of Phong 1973, eq. 4.5, times the light's color", .range = kNotNegative},
@@ -397,10 +418,18 @@ void visit_fields(Visitor& visit, T& highlight) {
               .text = "n of Phong 1973, eq. 4.5; larger is smaller and sharper",
               .range = {1, kLargestNumber}},
         highlight.exponent);
+  visit(Field{.key = "weight_by_angle",
+              .text = "W(i) of Phong 1973, eq. 4.5, in place of `weight`: points in the order of their angles, linear "
+                      "between them, constant beyond"},
+        highlight.weight_by_angle);
 }
 
 template <class Visitor, Is<MaterialDescription> T>
 void visit_fields(Visitor& visit, T& material) {
+  MaterialBase base;
+  visit(Field{.key = "from", .text = "A built-in material whose values hold where no other key gives one"}, base);
+  if constexpr (!std::is_const_v<T>)
+    if (!base.name.empty()) take_values(*builtin_material(base.name), material);
   visit(Field{.key = "diffuse", .text = "k_d of Whitted 1980, eq. 2", .range = kNotNegative}, material.diffuse);
   visit(Field{.key = "ambient",
               .text = "Share of the scene's ambient light that is reflected",
@@ -419,6 +448,28 @@ void visit_fields(Visitor& visit, T& material) {
               .text = "Weights k_s F and k_t (1 - F) by Fresnel's formulas in place of constant k_s and k_t",
               .absent = "as render.fresnel"},
         material.fresnel);
+  visit(Field{.key = "conductor",
+              .text = "Whether `reflection` is that of a metal at normal incidence: k_s + (1 - k_s) (1 - cos i)^5 by "
+                      "Schlick's formula; it transmits nothing"},
+        material.conductor);
+  visit(
+      Field{.key = "absorption",
+            .text = "a of exp(-a t): what a length t inside lets through. It acts on the way to a surface that is hit "
+                    "from behind; where some material has a priority, on every way inside",
+            .unit = "per scene unit",
+            .range = kNotNegative},
+      material.absorption);
+  visit(Field{.key = "thin",
+              .text = "Whether the surface is a sheet without an inside, which transmits without bending; with fresnel "
+                      "it reflects what both faces of a thin pane do, 2F / (1 + F)"},
+        material.thin);
+  visit(Field{.key = "priority",
+              .text =
+                  "Where media overlap, that of the highest priority is there, and surfaces of the others do nothing; "
+                  "of equal ones that which was entered last. 0 in every material: media are not tracked, and a "
+                  "surface separates its own inside from empty space",
+              .range = {-1000, 1000}},
+        material.priority);
 }
 
 template <class Visitor, Is<FaceGroup> T>
@@ -633,8 +684,9 @@ void visit_fields(Visitor& visit, T& scene) {
 /// A struct with a table.
 template <class T>
 concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> ||
-    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, HighlightDescription> ||
-    Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, GroupDescription> ||
+    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, AngleWeight> ||
+    Is<T, HighlightDescription> || Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> ||
+    Is<T, GroupDescription> ||
     Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.

@@ -220,6 +220,18 @@ class SchemaWriter {
     out_.key("const");
     out_.value(version.value);
   }
+  void schema(const Field&, const MaterialBase&) {
+    out_.key("oneOf");
+    out_.begin_array(JsonWriter::Layout::lines);
+    for (const BuiltinMaterial& material : builtin_materials())
+      nested([&] {
+        out_.key("const");
+        out_.value(std::string_view(material.description.name));
+        out_.key("description");
+        out_.value(std::string_view(sentence(material.text)));
+      });
+    out_.end_array();
+  }
   void schema(const Field&, bool) { type("boolean"); }
   void schema(const Field&, const std::string&) { type("string"); }
   void schema(const Field& field, double) {
@@ -338,6 +350,9 @@ class SchemaWriter {
   void schema(const Field&, const std::vector<FaceGroup>&) {
     list([&] { object(FaceGroup{}); });
   }
+  void schema(const Field&, const std::vector<AngleWeight>&) {
+    list([&] { object(AngleWeight{}); });
+  }
   template <Named T>
   void schema(const Field&, const std::vector<T>&) {
     type("object");
@@ -378,6 +393,14 @@ class ReferenceWriter {
     text_ += "\n### " + heading + "\n\n" + intro + "\n\n";
     text_ += "| key | type | default | range | meaning |\n|---|---|---|---|---|\n";
     visit_fields(*this, defaults);
+  }
+
+  void builtin_materials_table() {
+    text_ +=
+        "\n### What `from` of a material may name\n\nPhong 1973, Appendix II and p. 60: reflection coefficients, W "
+        "and n.\n\n| name | what it is |\n|---|---|\n";
+    for (const BuiltinMaterial& material : builtin_materials())
+      text_ += "| `" + material.description.name + "` | " + sentence(material.text) + " |\n";
   }
 
   template <class Variant>
@@ -425,7 +448,9 @@ class ReferenceWriter {
     if constexpr (std::same_as<T, bool>) return "true or false";
     if constexpr (std::integral<T> || std::same_as<T, SceneVersion>) return "whole number";
     if constexpr (std::same_as<T, double>) return "number";
-    if constexpr (std::same_as<T, std::string> || std::is_enum_v<T> || std::same_as<T, Antialiasing>) return "string";
+    if constexpr (std::same_as<T, std::string> || std::is_enum_v<T> || std::same_as<T, Antialiasing> ||
+                  std::same_as<T, MaterialBase>)
+      return "string";
     if constexpr (std::same_as<T, Vec2d>) return "`[x, y]`";
     if constexpr (std::same_as<T, Vec3d>) return "`[x, y, z]`";
     if constexpr (std::same_as<T, ScaleFactors>) return "number or `[x, y, z]`";
@@ -436,7 +461,8 @@ class ReferenceWriter {
       return "list of `[x, y, z]`";
     if constexpr (std::same_as<T, std::vector<Vec2f>>) return "list of `[u, v]`";
     if constexpr (std::same_as<T, FaceLists>) return "list of `[i, j, k, ...]`";
-    if constexpr (std::same_as<T, std::vector<FaceGroup>>) return "list of objects";
+    if constexpr (std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>>)
+      return "list of objects";
     if constexpr (requires(const T& list) { noun_of<typename T::value_type>(); }) return "objects by name";
     if constexpr (Table<T> || std::same_as<T, Background>) return "object";
     return {};
@@ -455,6 +481,8 @@ class ReferenceWriter {
       return "as its table";
     } else if constexpr (std::same_as<T, Background>) {
       return "black";
+    } else if constexpr (std::same_as<T, MaterialBase>) {
+      return "none";
     } else if constexpr (std::same_as<T, FaceLists> || (requires { member.size(); } && !std::same_as<T, std::string>)) {
       return "none";
     } else {
@@ -543,6 +571,8 @@ std::string scene_reference() {
   out.table("materials.NAME", "One material: I = ambient + diffuse + highlights + k_s S + k_t T (Whitted 1980, eq. 2).",
             MaterialDescription{});
   out.table("materials.NAME.highlight", "W cos^n (Phong 1973, eq. 4.5).", HighlightDescription{});
+  out.table("materials.NAME.highlight.weight_by_angle[]", "A point of W(i).", AngleWeight{});
+  out.builtin_materials_table();
   out.alternatives("Where a color or checker stands", std::variant<CheckerPattern>());
   out.table("groups.NAME", "One group of shapes, in a space of its own.", GroupDescription{});
   out.table("shapes.NAME", "One shape; these keys and those of its type.", ShapeDescription{});

@@ -99,6 +99,14 @@ inline void read(const Place& at, const Field& field, JsonValue value, SceneVers
                               std::to_string(kSceneVersion));
 }
 
+inline void read(const Place& at, const Field&, JsonValue value, MaterialBase& out) {
+  const std::string name(value.kind() == JsonKind::string ? value.string() : std::string_view());
+  if (builtin_material(name) == nullptr)
+    at.fail(value.line(), "unknown material " + description_of(value) + "; " +
+                              choices_text("built-in materials", name, builtin_material_names()));
+  out.name = name;
+}
+
 template <class E>
 requires std::is_enum_v<E>
 void read(const Place& at, const Field&, JsonValue value, E& out) {
@@ -192,7 +200,8 @@ void read(const Place& at, const Field& field, JsonValue value, std::vector<T>& 
   out.clear();
   out.reserve(value.size());
   value.for_each_element([&](JsonValue element) {
-    read(Place(at, static_cast<std::int64_t>(out.size())), field, element, out.emplace_back());
+    const auto index = static_cast<std::int64_t>(out.size());
+    read(Place(at, index), field, element, out.emplace_back());
   });
 }
 

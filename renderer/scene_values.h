@@ -40,12 +40,14 @@ class SceneValueWriter {
   /// Whether the writer leaves the key out.
   template <class T>
   static bool is_absent(const Field& field, const T& member) {
-    if constexpr (std::same_as<T, std::string>)
+    if constexpr (std::same_as<T, MaterialBase>)
+      return true;
+    else if constexpr (std::same_as<T, std::string>)
       return member.empty() && !field.absent.empty();
     else if constexpr (std::same_as<T, FaceLists>)
       return member.sizes.empty();
     else if constexpr (std::same_as<T, std::vector<Vec3f>> || std::same_as<T, std::vector<Vec2f>> ||
-                       std::same_as<T, std::vector<FaceGroup>>)
+                       std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>>)
       return member.empty();
     else if constexpr (std::same_as<T, Matrix44d>)
       return member == Matrix44d();
@@ -62,6 +64,7 @@ class SceneValueWriter {
   void write(double value) { out_.value(value); }
   void write(const std::string& value) { out_.value(std::string_view(value)); }
   void write(const SceneVersion& version) { out_.value(version.value); }
+  void write(const MaterialBase&) {}
   void write(const Antialiasing& antialias) { out_.value(std::string_view(antialiasing_text(antialias))); }
   template <class E>
   requires std::is_enum_v<E>

@@ -51,7 +51,7 @@ struct LocalLight {
   bool lit = false;  ///< the light stands on the side that is seen, by both normals, and shines this way
 };
 
-/// k_d (N.L) and W (R.L)^n (Phong 1973, eq. 4.5) or W (N.H)^n (Whitted 1980, eq. 1), times the light's color.
+/// k_d (N.L) and W(i) (R.L)^n (Phong 1973, eq. 4.5) or W (N.H)^n (Whitted 1980, eq. 1), times the light's color.
 inline LocalLight local_light(const ShadingPoint& point, const Light& light, HighlightForm form) {
   LocalLight result;
   result.direction = light.direction_from(point.surface.position, result.distance);
@@ -77,7 +77,11 @@ inline LocalLight local_light(const ShadingPoint& point, const Light& light, Hig
       const float square = halfway.dot(halfway);
       base = square > 0 ? normal.dot(halfway) / std::sqrt(square) : 0.0f;
     }
-    if (base > 0) result.highlight = color * material.highlight * std::pow(std::min(base, 1.0f), material.exponent);
+    if (base > 0) {
+      const Rgb weight = kFeatures.tabled_highlights && material.tabled_highlight ? material.highlight_table.at(cosine)
+                                                                                  : material.highlight;
+      result.highlight = color * weight * std::pow(std::min(base, 1.0f), material.exponent);
+    }
   }
   return result;
 }
@@ -88,23 +92,33 @@ struct Branches {
   Vec3f reflected, refracted;  ///< unit; set where the weight is not zero
 };
 
+/// The normal that R and P are formed about, and its cosine with the ray, in (0, 1].
+struct Incidence {
+  Vec3f normal;
+  float cosine;
+};
+inline Incidence incidence(const ShadingPoint& point) {
+  const Vec3f& shading = point.surface.shading_normal;
+  const float cosine = -point.direction.dot(shading);
+  if (cosine > 0) return {shading, cosine};
+  // An interpolated normal may lean away from the viewer near a silhouette: there the facet's own serves.
+  const Vec3f& facet = point.surface.geometric_normal;
+  return {facet, -point.direction.dot(facet)};
+}
+
+/// Thin sheets and conductors. `index`: the sheet's over that of what surrounds it.
+Branches special_branches(const ShadingPoint& point, float index);
+
 /// R and P with k_s and k_t, or with k_s F and k_t (1 - F). At total internal reflection T = 0; F = 1.
-[[gnu::always_inline]] inline Branches branches(const ShadingPoint& point) {
+/// `relative_index`: of the side that P enters over the side that the ray comes from; `eta` is its inverse.
+[[gnu::always_inline]] inline Branches dielectric_branches(const ShadingPoint& point, float relative_index, float eta) {
   const Material& material = *point.material;
   const Vec3f& side = point.surface.geometric_normal;
-  Vec3f normal = point.surface.shading_normal;
-  float cosine = -point.direction.dot(normal);
-  if (!(cosine > 0)) {
-    // An interpolated normal may lean away from the viewer near a silhouette: there the facet's own serves.
-    normal = side;
-    cosine = -point.direction.dot(normal);
-  }
+  auto [normal, cosine] = incidence(point);
   Branches result;
   float reflectance = 1;
   const bool fresnel = kFeatures.fresnel && material.fresnel;
   if (material.has_transmission || fresnel) {
-    const float relative_index = point.leaving ? material.inverse_index : material.index;
-    const float eta = point.leaving ? material.index : material.inverse_index;
     cosine = std::min(cosine, 1.0f);
     if (const auto refracted_cos = refracted_cosine(cosine, eta)) {
       if (fresnel) reflectance = fresnel_reflectance(cosine, *refracted_cos, relative_index);
@@ -121,6 +135,19 @@ struct Branches {
   }
   return result;
 }
+
+/// The same where the surface separates its material's inside from empty space.
+[[gnu::always_inline]] inline Branches branches(const ShadingPoint& point) {
+  const Material& material = *point.material;
+  if (kFeatures.special_optics && material.special_optics) return special_branches(point, material.index);
+  const float relative_index = point.leaving ? material.inverse_index : material.index;
+  const float eta = point.leaving ? material.index : material.inverse_index;
+  return dielectric_branches(point, relative_index, eta);
+}
+
+/// The same where it separates media of known indices (media.h): `relative_index` as of dielectric_branches(), for thin
+/// sheets as of special_branches().
+Branches branches_between(const ShadingPoint& point, float relative_index);
 
 /// Whitted's linear attenuation of a child segment (1980, sec. 2), clamped at 0: max(0, 1 - a t).
 inline float segment_attenuation(float rate, float distance) { return std::max(0.0f, 1 - rate * distance); }

@@ -6,6 +6,7 @@
 #include "benchmarks/recording_intersector.h"
 #include "benchmarks/recursive_tracer.h"
 #include "benchmarks/reference_scenes.h"
+#include "renderer/builtin_scenes.h"
 
 namespace raytree::benchmarks {
 namespace {
@@ -26,14 +27,25 @@ SceneDescription scene_with_plane() {
   return scene;
 }
 
+/// Colored shadows, absorption, a thin sheet, a conductor, and media by priority if asked for.
+SceneDescription glass_scene(bool priorities) {
+  SceneDescription scene = builtin_scene("glass");
+  scene.image = {240, 160};
+  scene.render.antialias = {Antialiasing::Method::none, 1};
+  for (MaterialDescription& material : scene.materials)
+    if (!priorities) material.priority = 0;
+  return scene;
+}
+
 void expect_replays_agree(SceneDescription description) {
   Scene scene = prepared(std::move(description));
   const RecordedRender recorded = record_render(scene);
   const auto counts = recorded.record.ray_counts();
   EXPECT_EQ(counts[0], recorded.statistics.rays[static_cast<int>(RayKind::primary)]);
-  EXPECT_EQ(counts[1], recorded.statistics.rays[static_cast<int>(RayKind::reflected)] +
-                           recorded.statistics.rays[static_cast<int>(RayKind::refracted)]);
-  EXPECT_EQ(counts[2] + counts[3], recorded.statistics.rays[static_cast<int>(RayKind::shadow)]);
+  // Shadow rays that are followed through what transmits ask for nearest hits.
+  EXPECT_EQ(counts[1] + counts[2] + counts[3], recorded.statistics.rays[static_cast<int>(RayKind::reflected)] +
+                                                   recorded.statistics.rays[static_cast<int>(RayKind::refracted)] +
+                                                   recorded.statistics.rays[static_cast<int>(RayKind::shadow)]);
   EXPECT_GT(recorded.record.hits[0], 0u);
   EXPECT_GT(recorded.record.hits[2], 0u);
 
@@ -50,6 +62,11 @@ void expect_replays_agree(SceneDescription description) {
 
 TEST(Replay, FindsWhatTheRenderFound) { expect_replays_agree(small_scene()); }
 TEST(Replay, FindsWhatTheRenderFoundBesideAPlane) { expect_replays_agree(scene_with_plane()); }
+
+TEST(Replay, FindsWhatTheRenderFoundThroughGlass) {
+  expect_replays_agree(glass_scene(false));
+  expect_replays_agree(glass_scene(true));
+}
 
 TEST(Replay, AMismatchIsSeen) {
   Scene scene = prepared(small_scene());
@@ -71,6 +88,15 @@ TEST(Recursion, PaintsThePictureOfTheGenerations) {
     if (cutoff > 0) {
       EXPECT_GT(rendered.statistics.branches_cut, 0u);
     }
+  }
+}
+
+TEST(Recursion, PaintsLightThroughThings) {
+  for (const bool priorities : {false, true}) {
+    const Scene scene = prepared(glass_scene(priorities));
+    EXPECT_TRUE(scene.transparent_shadows);
+    EXPECT_EQ(scene.tracks_media, priorities);
+    EXPECT_EQ(picture_mismatch(render_recursively(scene, embree_of(scene), 2), render(scene, RenderOptions())), "");
   }
 }
 

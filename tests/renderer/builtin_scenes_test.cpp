@@ -24,7 +24,7 @@ TEST(BuiltinScenes, AllReadAndRoundTrip) {
     const std::string text = write_scene(description);
     EXPECT_EQ(write_scene(read_scene(text, scene.name, "")), text) << scene.name;
   }
-  for (const char* name : {"spheres-1980", "sphere-flake", "terrain", "stepwedge", "mirrors", "lens"})
+  for (const char* name : {"spheres-1980", "sphere-flake", "terrain", "stepwedge", "mirrors", "lens", "glass"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
 }
 

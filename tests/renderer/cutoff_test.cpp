@@ -42,6 +42,8 @@ class RandomScenes {
     else
       scene.background = ConstantBackground{color(1)};
 
+    scene.render.transparent_shadows = chance(0.7);
+    const bool layered = chance(0.4);  // media are told apart
     const int materials = integer(2, 5);
     for (int i = 0; i < materials; ++i) {
       MaterialDescription m = material("m" + std::to_string(i), color(1));
@@ -58,6 +60,12 @@ class RandomScenes {
       if (chance(0.6)) m.transmission = color(chance(0.2) ? 1.2 : 0.6);
       m.index_of_refraction = uniform(0.7, 2.2);
       if (chance(0.3)) m.fresnel = chance(0.7);
+      if (chance(0.3)) m.absorption = color(1);
+      if (chance(0.15)) m.thin = true, m.absorption = Rgb(0);
+      if (chance(0.15)) m.conductor = true, m.transmission = Rgb(0);
+      if (layered) m.priority = integer(-1, 2);
+      if (chance(0.2))
+        m.highlight = {Rgb(0), uniform(1, 80), {{uniform(0, 40), color(0.8)}, {uniform(50, 90), color(0.8)}}};
       scene.materials.push_back(m);
     }
     const auto any_material = [&] { return "m" + std::to_string(integer(0, materials - 1)); };

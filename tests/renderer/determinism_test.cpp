@@ -13,7 +13,8 @@ namespace {
 
 using namespace test;
 
-/// Every feature at once: mirrors, glass, both lights, checker, gradient, smooth mesh, planes, discs, spheres.
+/// Every feature at once: mirrors, glass, both lights, checker, gradient, smooth mesh, planes, discs, spheres; liquid
+/// that reaches into colored glass, a thin sheet, metal with a highlight by angle.
 SceneDescription busy_scene() {
   CameraDescription camera;
   camera.position = {1, 2, 7};
@@ -33,13 +34,28 @@ SceneDescription busy_scene() {
   scene.materials[2].reflection = Rgb(0.8f);
   scene.materials[2].highlight = {Rgb(0.5f), 50};
   scene.materials[3].highlight = {Rgb(0.5f), 20};
+  MaterialDescription bottle = material("bottle", Rgb(0)), liquid = bottle, sheet = bottle,
+                      metal = material("metal", Rgb(0));
+  bottle.transmission = liquid.transmission = sheet.transmission = Rgb(0.9f, 1, 0.8f);
+  bottle.reflection = liquid.reflection = sheet.reflection = Rgb(1);
+  bottle.absorption = Rgb(0.5f, 0.1f, 1), bottle.priority = 2;
+  liquid.name = "liquid", liquid.absorption = Rgb(0, 1, 1), liquid.index_of_refraction = 1.33, liquid.priority = 1;
+  sheet.name = "sheet", sheet.thin = true;
+  metal.conductor = true, metal.reflection = Rgb(0.9f, 0.6f, 0.3f);
+  metal.highlight = {Rgb(0), 6, {{0, Rgb(0.6f)}, {80, Rgb(0.8f)}}};
+  scene.materials.insert(scene.materials.end(), {bottle, liquid, sheet, metal});
   scene.lights = {directional_light({-1, -2, -1}), point_light({3, 4, 5}, Rgb(0.5f))};
   scene.shapes = {shape(PlaneShape{{0, -1, 0}, {0, 1, 0}}, "floor"),
                   shape(SphereShape{{-1.2, 0, 0}, 1}, "glass"),
                   shape(SphereShape{{1.2, 0, -1}, 1}, "mirror"),
                   shape(DiscShape{{0, 1.5, -2}, {0.2, -0.3, 1}, 1}, "mirror"),
                   mesh_shape(globe_mesh(0.8, 24, 12), "dull", NormalSource::smooth),
-                  mesh_shape(box_mesh({1.5f, -1, 0.8f}, {2.2f, 0, 1.6f}), "glass")};
+                  mesh_shape(box_mesh({1.5f, -1, 0.8f}, {2.2f, 0, 1.6f}), "glass"),
+                  mesh_shape(box_mesh({-2.2f, -1, 1.2f}, {-1.2f, 0.5f, 2.2f}), "bottle"),
+                  mesh_shape(globe_mesh(0.6, 16, 8), "liquid"),
+                  shape(DiscShape{{0, 1, 3}, {0.3, 1, 0.2}, 0.7}, "sheet"),
+                  shape(SphereShape{{-0.4, -0.6, 2.6}, 0.4}, "metal")};
+  scene.shapes[7].transform = translation({-1.5, -0.2, 1.8});
   scene.shapes[4].transform = translation({0.2, 0.5, 1.5});
   return scene;
 }

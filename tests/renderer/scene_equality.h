@@ -26,10 +26,11 @@ inline bool equal(const CameraDescription& a, const CameraDescription& b) {
          angle == b.field_of_view && height == b.height;
 }
 inline bool equal(const RenderSettings& a, const RenderSettings& b) {
-  const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, shadowed, fresnel, attenuation] = a;
+  const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, transparent, shadowed, fresnel, attenuation] =
+      a;
   return depth == b.depth && cutoff == b.cutoff && equal(antialias, b.antialias) && equal(adaptive, b.adaptive) &&
-         highlights == b.highlights && shadows == b.shadows && shadowed == b.shadowed_highlights &&
-         fresnel == b.fresnel && attenuation == b.distance_attenuation;
+         highlights == b.highlights && shadows == b.shadows && transparent == b.transparent_shadows &&
+         shadowed == b.shadowed_highlights && fresnel == b.fresnel && attenuation == b.distance_attenuation;
 }
 inline bool equal(const ConstantBackground& a, const ConstantBackground& b) {
   const auto& [color] = a;
@@ -57,8 +58,13 @@ inline bool equal(const CheckerPattern& a, const CheckerPattern& b) {
   return even == b.even && odd == b.odd && size == b.size && plane == b.plane && offset == b.offset;
 }
 inline bool equal(const HighlightDescription& a, const HighlightDescription& b) {
-  const auto& [weight, exponent] = a;
-  return weight == b.weight && exponent == b.exponent;
+  const auto& [weight, exponent, table] = a;
+  return weight == b.weight && exponent == b.exponent &&
+         std::equal(table.begin(), table.end(), b.weight_by_angle.begin(), b.weight_by_angle.end(),
+                    [](const AngleWeight& x, const AngleWeight& y) {
+                      const auto& [angle, point_weight] = x;
+                      return angle == y.angle && point_weight == y.weight;
+                    });
 }
 inline bool equal(const FaceGroup& a, const FaceGroup& b) {
   const auto& [name, material, first, count] = a;
@@ -126,10 +132,12 @@ inline bool equal(const LightDescription& a, const LightDescription& b) {
   return name == b.name && color == b.color && equal(kind, b.kind);
 }
 inline bool equal(const MaterialDescription& a, const MaterialDescription& b) {
-  const auto& [name, diffuse, ambient, highlight, reflection, transmission, index, fresnel] = a;
+  const auto& [name, diffuse, ambient, highlight, reflection, transmission, index, fresnel, conductor, absorption, thin,
+               priority] = a;
   return name == b.name && equal(diffuse, b.diffuse) && ambient.has_value() == b.ambient.has_value() &&
          (!ambient || equal(*ambient, *b.ambient)) && equal(highlight, b.highlight) && reflection == b.reflection &&
-         transmission == b.transmission && index == b.index_of_refraction && fresnel == b.fresnel;
+         transmission == b.transmission && index == b.index_of_refraction && fresnel == b.fresnel &&
+         conductor == b.conductor && absorption == b.absorption && thin == b.thin && priority == b.priority;
 }
 /// All but where it stood in its file.
 inline bool equal(const ShapeDescription& a, const ShapeDescription& b) {

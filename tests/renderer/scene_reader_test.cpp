@@ -9,6 +9,7 @@
 #include <fstream>
 #include <random>
 
+#include "renderer/material.h"
 #include "renderer/suggestion.h"
 #include "tests/renderer/scene_equality.h"
 
@@ -569,6 +570,12 @@ class Randomizer {
     if (whole(0, 1) == 0) fill(field, x.emplace());
   }
   void fill(const Field&, Background& x) { tagged({}, x); }
+  void fill(const Field&, MaterialBase&) {}
+  void fill(const Field&, std::vector<AngleWeight>& table) {
+    table.clear();
+    for (int i = whole(0, 3); i > 0; --i)
+      table.push_back({90.0 / i - 90.0 / (i + 1) * number({0, 0.9}), {float_number({0}), float_number({0}), 1}});
+  }
   void fill(const Field&, Matrix44d& x) {
     x = Matrix44d();
     if (whole(0, 2) == 0) return;
@@ -582,8 +589,16 @@ class Randomizer {
       T element{};
       element.name = "name " + std::to_string(i) + ".x";
       visit_fields(*this, element);
+      if constexpr (std::same_as<T, MaterialDescription>) make_sound(element);
       list.push_back(std::move(element));
     }
+  }
+  /// What material_problem() refuses cannot be read back.
+  static void make_sound(MaterialDescription& material) {
+    if (material.conductor) material.transmission = Rgb();
+    if (material.thin) material.absorption = Rgb();
+    if (!material.highlight.weight_by_angle.empty()) material.highlight.weight = Rgb();
+    ASSERT_EQ(material_problem(material), "");
   }
   template <Table T>
   void fill(const Field&, T& object) {
@@ -674,7 +689,7 @@ TEST(SceneFields, TablesHoldEveryMember) {
     return counter.count;
   };
   EXPECT_EQ(count(ImageDescription{}), 2);
-  EXPECT_EQ(count(RenderSettings{}), 9);
+  EXPECT_EQ(count(RenderSettings{}), 10);
   EXPECT_EQ(count(AdaptiveSampling{}), 3);
   EXPECT_EQ(count(CameraDescription{}), 7 - 1) << "without name";
   EXPECT_EQ(count(ConstantBackground{}), 1);
@@ -684,8 +699,9 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(SpotLight{}), 6);
   EXPECT_EQ(count(LightDescription{}), 3 - 1) << "without name";
   EXPECT_EQ(count(CheckerPattern{}), 5);
-  EXPECT_EQ(count(HighlightDescription{}), 2);
-  EXPECT_EQ(count(MaterialDescription{}), 8 - 1) << "without name";
+  EXPECT_EQ(count(AngleWeight{}), 2);
+  EXPECT_EQ(count(HighlightDescription{}), 3);
+  EXPECT_EQ(count(MaterialDescription{}), 12 - 1 + 1) << "without name, with \"from\"";
   EXPECT_EQ(count(FaceGroup{}), 4);
   EXPECT_EQ(count(MeshShape{}), 4);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";

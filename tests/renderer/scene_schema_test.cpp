@@ -118,7 +118,7 @@ Json rich_document() {
   return Json::parse(R"({
     "raytree": 1, "title": "t", "image": {"width": 10, "height": 10},
     "render": {"depth": 3, "cutoff": 0, "antialias": "grid:2",
-               "adaptive": {"threshold": 0.1, "levels": 3, "minimum_level": 1}, "highlights": "halfway", "shadows": true,
+               "adaptive": {"threshold": 0.1, "levels": 3, "minimum_level": 1}, "highlights": "halfway", "shadows": true, "transparent_shadows": true,
                "shadowed_highlights": true, "fresnel": false, "distance_attenuation": 0},
     "background": {"type": "gradient", "bottom": 0, "horizon": [0, 0, 1], "top": 1}, "ambient": 0.1,
     "cameras": {"main": {"projection": "orthographic", "position": [0, 0, 5], "target": [0, 0, 0], "up": [0, 1, 0],
@@ -127,7 +127,10 @@ Json rich_document() {
                "b": {"type": "point", "position": [0, 1, 0], "color": [1, 1, 1]}},
     "materials": {"m": {"diffuse": {"type": "checker", "even": 1, "odd": 0, "size": 1, "plane": "uv", "offset": [0, 0]},
                         "ambient": 1, "highlight": {"weight": 1, "exponent": 2}, "reflection": 0, "transmission": 0,
-                        "index_of_refraction": 1.5}},
+                        "index_of_refraction": 1.5, "conductor": false, "absorption": [0, 1, 2], "thin": false,
+                        "priority": 1},
+                  "p": {"from": "phong-red", "highlight": {"weight_by_angle": [{"angle": 0, "weight": 0.5},
+                                                                              {"angle": 90, "weight": [1, 1, 0]}]}}},
     "shapes": {
       "a": {"type": "mesh", "file": "a.ply", "normals": "flat", "crease_angle": 30, "material": "m"},
       "b": {"type": "mesh", "origin": [0, 0, 0], "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "faces": [[0, 1, 2]],
@@ -143,8 +146,10 @@ Json rich_document() {
 
 /// Where messages of the reader speak of what a schema cannot say.
 bool beyond_a_schema(const std::string& message) {
-  for (const char* text : {"unknown material", "too many", "same point", "line of sight", "not invertible", "index ",
-                           "not in the shape", " positions; give", "not affine", "overlap the group"})
+  for (const char* text :
+       {"unknown material", "too many", "same point", "line of sight", "not invertible", "index ", "not in the shape",
+        " positions; give", "not affine", "overlap the group", "conductor transmits", "thin sheet has no inside",
+        "give either weight", "weight_by_angle: angle"})
     if (message.find(text) != message.npos) return true;
   return false;
 }

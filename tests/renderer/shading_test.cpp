@@ -202,6 +202,30 @@ TEST(Shading, HighlightHasTheLightsColorTimesItsWeightAndLeavesTheDiffuseColorAl
   expect_color(color_at(rendered(scene).film, 0, 0), Rgb(0.1f + 0.5f, 0.4f + 0.5f, 1.2f + 0.5f), 2 * kFloatError);
 }
 
+TEST(Shading, AHighlightsWeightFollowsItsTableOverTheAngleOfIncidence) {
+  // The eye stands where the mirrored light goes: cos s = 1, so that the highlight is W(i) to the last digits.
+  SceneDescription scene = dark_scene(2, front_camera(1e-4));
+  scene.materials = {material("m", Rgb(0))};
+  scene.materials[0].highlight.exponent = 2;
+  scene.materials[0].highlight.weight_by_angle = {
+      {10, Rgb(0.2f, 0, 1)}, {30, Rgb(0.4f, 0.5f, 1)}, {80, Rgb(1, 0.25f, 0)}};
+  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "m")};
+  const auto seen_at = [&](double degrees) {
+    const double i = degrees * std::numbers::pi / 180;
+    scene.cameras[0].position = Vec3d(std::sin(i), 0, std::cos(i)) * 5.0;
+    scene.lights = {directional_light({std::sin(i), 0, -std::cos(i)})};
+    return color_at(rendered(scene).film, 0, 0);
+  };
+  // acos of a cosine in float: off by an ulp of it over sin i; times the steepest slope, 1 in 20 degrees.
+  const double tolerance = 4 * kFloatError + 3 * 0x1p-23 / std::sin(10 * std::numbers::pi / 180);
+  expect_color(seen_at(5), Rgb(0.2f, 0, 1), tolerance, "before the first point");
+  expect_color(seen_at(20), Rgb(0.3f, 0.25f, 1), tolerance, "between");
+  expect_color(seen_at(55), Rgb(0.7f, 0.375f, 0.5f), tolerance, "between");
+  expect_color(seen_at(85), Rgb(1, 0.25f, 0), tolerance, "after the last point");
+  // What the cutoff rests on is the largest entry of each channel.
+  EXPECT_EQ(prepared(scene).materials[0].highlight, Rgb(1, 0.5f, 1));
+}
+
 TEST(Shading, CheckerLooksUpTheSquareThatAPointLiesIn) {
   SceneDescription scene = dark_scene(40, front_camera(8));  // five pixels a unit
   scene.ambient = Rgb(1);
@@ -309,7 +333,9 @@ SceneDescription shadow_scene(const std::string& occluder_material) {
 
 TEST(Shading, ShadowsAreOpaqueAndSharp) {
   for (const char* occluder : {"floor", "clear"}) {
-    const RenderResult result = rendered(shadow_scene(occluder));
+    SceneDescription scene = shadow_scene(occluder);
+    scene.render.transparent_shadows = false;
+    const RenderResult result = rendered(scene);
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x) {
         const double px = (x + 0.5 - 16) / 16, py = (y + 0.5 - 16) / 16, r = std::sqrt(px * px + py * py);

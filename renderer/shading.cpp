@@ -1,0 +1,50 @@
+#include "renderer/shading.h"
+
+namespace raytree {
+namespace {
+
+/// Schlick 1994: F = F_0 + (1 - F_0) (1 - cos i)^5 for each channel, F_0 = k_s. A k_s above 1 stays what it is.
+Branches conductor_branches(const ShadingPoint& point) {
+  const auto [normal, cosine] = incidence(point);
+  const float rest = std::max(0.0f, 1 - cosine), square = rest * rest, grazing = square * square * rest;
+  const Rgb& k_s = point.material->reflection;
+  Branches result;
+  result.reflected = kept_on_side(reflected_direction(point.direction, normal), point.surface.geometric_normal);
+  result.reflected_weight = k_s + max(Rgb(), Rgb(1) - k_s) * grazing;
+  return result;
+}
+
+/// Both faces of the sheet lie in one place. What enters is reflected to and fro between them, each time losing (1 - F)
+/// to the outside: reflected in all F + (1 - F)^2 F (1 + F^2 + F^4 + ...) = 2F / (1 + F), transmitted what is left,
+/// (1 - F) / (1 + F). F is the same inside and outside; at total reflection it is 1, and so is the sum.
+Branches thin_branches(const ShadingPoint& point, float index) {
+  const Material& material = *point.material;
+  const auto [normal, cosine] = incidence(point);
+  float reflectance = 1, transmittance = 1;
+  if (kFeatures.fresnel && material.fresnel) {
+    const float one_face = fresnel_reflectance(std::min(cosine, 1.0f), index);
+    reflectance = 2 * one_face / (1 + one_face);
+    transmittance = 1 - reflectance;
+  }
+  Branches result;
+  result.refracted = point.direction;
+  result.refracted_weight = material.transmission * transmittance;
+  if (material.has_reflection) {
+    result.reflected = kept_on_side(reflected_direction(point.direction, normal), point.surface.geometric_normal);
+    result.reflected_weight = material.reflection * reflectance;
+  }
+  return result;
+}
+
+}  // namespace
+
+[[gnu::noinline]] Branches special_branches(const ShadingPoint& point, float index) {
+  return point.material->conductor ? conductor_branches(point) : thin_branches(point, index);
+}
+
+[[gnu::noinline]] Branches branches_between(const ShadingPoint& point, float relative_index) {
+  if (point.material->special_optics) return special_branches(point, relative_index);
+  return dielectric_branches(point, relative_index, 1 / relative_index);
+}
+
+}  // namespace raytree
