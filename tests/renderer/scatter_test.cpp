@@ -71,7 +71,7 @@ TEST(Scatter, KeepsToHeightsSlopesAndClearings) {
   EXPECT_TRUE(scattered(nowhere, terrain, grid).empty());
   nowhere = {};
   nowhere.clearings = 1;
-  EXPECT_LT(scattered(nowhere, terrain, grid).size(), 10u);
+  EXPECT_TRUE(scattered(nowhere, terrain, grid).empty());
   ScatterShape flat;
   flat.count = 300, flat.steepest = 5;
   const auto level = scattered(flat, terrain, grid);

@@ -360,6 +360,7 @@ TEST(SceneReference, StandsInTheDocumentation) {
   for_each_property(schema(), "", named);
   for_each_property(schema()["$defs"]["checker"], "", named);
   for_each_property(schema()["$defs"]["transform_step"], "", named);
+  for_each_property(schema()["$defs"]["shape"], "", named);
   EXPECT_GT(keys, 70);
 }
 
