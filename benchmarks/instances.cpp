@@ -34,29 +34,30 @@ std::string instances_memory_json() {
   SceneDescription description = instances_scene();
   const double before = status_bytes("VmRSS");
   const Scene scene = prepared(std::move(description));
-  return nlohmann::json{{"before", before},
-                        {"resident", status_bytes("VmRSS")},
-                        {"peak", status_bytes("VmHWM")},
-                        {"arrays", scene.summary.array_bytes},
-                        {"embree", scene.summary.intersector_bytes},
-                        {"instances", scene.summary.instances},
-                        {"instanced_triangles", scene.summary.shapes.at(0).instanced_triangles * scene.summary.instances}}
+  return nlohmann::json{
+      {"before", before},
+      {"resident", status_bytes("VmRSS")},
+      {"peak", status_bytes("VmHWM")},
+      {"arrays", scene.summary.array_bytes},
+      {"embree", scene.summary.intersector_bytes},
+      {"instances", scene.summary.instances},
+      {"instanced_triangles", scene.summary.shapes.at(0).instanced_triangles * scene.summary.instances}}
       .dump();
 }
 
 std::vector<Figure> measure_instances(const MeasureContext& context) {
   context.progress("instances: memory");
-  const ChildResult child =
-      run_child({context.programs / "raytree_measure", kInstancesMemoryFlag}, context.scratch);
+  const ChildResult child = run_child({context.programs / "raytree_measure", kInstancesMemoryFlag}, context.scratch);
   require_success(child, "raytree_measure --instances-memory");
   const nlohmann::json memory = nlohmann::json::parse(child.output);
   const auto of = [&](const char* key) { return memory.at(key).get<double>(); };
   const double gibibytes = (of("peak") - of("before")) / kGibibyte;
   Figure size;
   size.row = "instances";
-  size.what = fmt::format("peak memory of preparing {:.0f} instances of a mesh of a million triangles, less what the "
-                          "program held before",
-                          of("instances"));
+  size.what = fmt::format(
+      "peak memory of preparing {:.0f} instances of a mesh of a million triangles, less what the "
+      "program held before",
+      of("instances"));
   size.unit = "GiB";
   size.measured = {gibibytes, gibibytes, gibibytes, 1};
   size.kind = BoundKind::at_most;
@@ -89,14 +90,13 @@ std::vector<Figure> measure_instances(const MeasureContext& context) {
     const PairedSpread pairs = measure_pairs(batched, bare, PairLimits());
     Figure figure;
     figure.row = "instances";
-    figure.what = fmt::format("the seam / bare Embree calls, {} {} rays at 10,000 instances, {}x{}, 1 thread",
-                              rays.size(), name_of(kind), scene.description.image.width,
-                              scene.description.image.height);
+    figure.what =
+        fmt::format("the seam / bare Embree calls, {} {} rays at 10,000 instances, {}x{}, 1 thread", rays.size(),
+                    name_of(kind), scene.description.image.width, scene.description.image.height);
     figure.measured = pairs.ratio;
     figure.kind = BoundKind::at_most;
     figure.bound = kMostOverBare;
-    if (bare_hits != hits)
-      figure.problem = fmt::format("the bare calls hit {} times, the seam {}", bare_hits, hits);
+    if (bare_hits != hits) figure.problem = fmt::format("the bare calls hit {} times, the seam {}", bare_hits, hits);
     figure.note = fmt::format("{:.4f} s by the seam, {:.4f} s bare: {}; fastest: {}", pairs.a.median, pairs.b.median,
                               calls_text(calls, record), calls_text(best_calls(replay, 1), record));
     figures.push_back(figure);

@@ -179,9 +179,8 @@ void look_at_occlusion(const RayBatch& batch, PassResult& result) {
 
 RayRecord record_of(const RaySet& rays) {
   const bool coherent = rays.coherence == Coherence::coherent;
-  const RayClass ray_class = rays.occlusion
-                                 ? (coherent ? RayClass::coherent_occlusion : RayClass::incoherent_occlusion)
-                                 : (coherent ? RayClass::coherent_nearest : RayClass::incoherent_nearest);
+  const RayClass ray_class = rays.occlusion ? (coherent ? RayClass::coherent_occlusion : RayClass::incoherent_occlusion)
+                                            : (coherent ? RayClass::coherent_nearest : RayClass::incoherent_nearest);
   RayRecord record;
   for (const RayBatch& batch : rays.batches) {
     record.batches.push_back({ray_class, record.rays.size(), batch.size});

@@ -7,8 +7,7 @@ namespace raytree::benchmarks {
 void RecordingIntersector::intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept {
   tracer_.intersect(rays, coherence, hits);
   std::uint64_t count = 0;
-  for (std::size_t i = 0; i < rays.size; ++i)
-    count += hits.geometry[i] != kNoGeometry;
+  for (std::size_t i = 0; i < rays.size; ++i) count += hits.geometry[i] != kNoGeometry;
   note(rays, coherence == Coherence::coherent ? RayClass::coherent_nearest : RayClass::incoherent_nearest, count);
 }
 

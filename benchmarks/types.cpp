@@ -67,9 +67,10 @@ std::vector<Figure> measure_types(const MeasureContext& context) {
                                              [&] { return pass_in(whole, hits_whole); }, PairLimits());
     Figure figure;
     figure.row = "types";
-    figure.what = fmt::format("triangles alone / with spheres, time of the same {} {} rays, spheres-1980 with a terrain "
-                              "of 1M triangles, 1 thread",
-                              rays.size(), name);
+    figure.what = fmt::format(
+        "triangles alone / with spheres, time of the same {} {} rays, spheres-1980 with a terrain "
+        "of 1M triangles, 1 thread",
+        rays.size(), name);
     figure.measured = pairs.ratio;
     figure.kind = BoundKind::at_least;
     figure.bound = kLeastShare;

@@ -296,8 +296,8 @@ Hit EmbreeIntersector::intersect_one(const Vec3f& origin, const Vec3f& direction
   RTCRayHit ray = embree::single_ray_hit(origin, direction, nearest.distance);
   query.intersect(state_->scene.get(), ray);
   if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID)
-    nearest = {ray.hit.geomID, ray.hit.primID,   ray.hit.u,
-               ray.hit.v,      ray.ray.tfar,     instance_of(ray.hit.instID[0], state_->first_instance)};
+    nearest = {ray.hit.geomID, ray.hit.primID, ray.hit.u,
+               ray.hit.v,      ray.ray.tfar,   instance_of(ray.hit.instID[0], state_->first_instance)};
   return nearest;
 }
 

@@ -17,7 +17,7 @@ struct EmbreeOptions {
   bool robust = true;    ///< watertight edges at .85-.91 of the speed
   bool compact = false;  ///< half the memory at .6 of the speed
   Quality quality = Quality::medium;
-  bool all_in_embree = false;  ///< spheres and discs too where they are few: the plain way, for comparison
+  bool all_in_embree = false;               ///< spheres and discs too where they are few: the plain way, for comparison
   const std::atomic<bool>* stop = nullptr;  ///< ends the build early
 };
 

@@ -58,7 +58,8 @@ class Replayer {
       const auto start = Clock::now();
       for (std::size_t i = 0; i < size; ++i) query.intersect(scene_, work_.single_ray_hits[i]);
       seconds = since(start);
-      for (std::size_t i = 0; i < size; ++i) hits += work_.single_ray_hits[i].hit.geomID != RTC_INVALID_GEOMETRY_ID || stopped(i);
+      for (std::size_t i = 0; i < size; ++i)
+        hits += work_.single_ray_hits[i].hit.geomID != RTC_INVALID_GEOMETRY_ID || stopped(i);
       return seconds;
     }
     const std::size_t packets = fill(rays, size, [&](std::size_t packet, int lane, const Ray& ray) {

@@ -21,9 +21,10 @@ void for_each(const FewShapes& few, Visit&& visit) {
             });
   if (few.discs)
     for (std::size_t d = 0; d < shapes.discs.center_radius.size(); ++d)
-      visit(kDiscGeometry, static_cast<std::uint32_t>(d),
-            [disc = shapes.discs.center_radius[d], normal = shapes.discs.normal[d]](
-                const Vec3f& origin, const Vec3f& direction) { return disc_distance(disc, normal, origin, direction); });
+      visit(
+          kDiscGeometry, static_cast<std::uint32_t>(d),
+          [disc = shapes.discs.center_radius[d], normal = shapes.discs.normal[d]](
+              const Vec3f& origin, const Vec3f& direction) { return disc_distance(disc, normal, origin, direction); });
 }
 
 }  // namespace

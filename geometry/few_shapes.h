@@ -1,5 +1,5 @@
-// Shapes that are tested one by one beside the tracer's own, in double: infinite planes, which no bounding volume holds,
-// and spheres and discs where they are so few that a hierarchy of their type would cost every ray more.
+// Shapes that are tested one by one beside the tracer's own, in double: infinite planes, which no bounding volume
+// holds, and spheres and discs where they are so few that a hierarchy of their type would cost every ray more.
 #pragma once
 
 #include <cmath>
@@ -30,7 +30,8 @@ struct FewShapes {
   bool any() const { return spheres || discs || !shapes->planes.empty(); }
 };
 
-/// Nearest of the few shapes for each ray, and its distance: kNoGeometry and the ray's max_distance where none is nearer.
+/// Nearest of the few shapes for each ray, and its distance: kNoGeometry and the ray's max_distance where none is
+/// nearer.
 struct FewHits {
   std::vector<GeometryId> geometry;      ///< [rays.size + padding]
   std::vector<std::uint32_t> primitive;  ///< defined where there is a geometry

@@ -35,8 +35,8 @@ void triangle(const InstanceTransform& transform, const TriangleMesh& mesh, cons
   const Vec3d e(mesh.positions[corner[1]] - a), f(mesh.positions[corner[2]] - a);
   const Vec3d reach = absolute(transform.vector(e)) + absolute(transform.vector(f));
   const double clearance = (point.clearance + added_clearance(transform, normal, point.position, reach)) * stretch;
-  point.clearance = static_cast<float>(clearance) +
-                    detail::clearance(point.geometric_normal, Vec3f(absolute(point.position)));
+  point.clearance =
+      static_cast<float>(clearance) + detail::clearance(point.geometric_normal, Vec3f(absolute(point.position)));
 }
 
 /// Adds the way into the group to a clearance that was found in scene space.
@@ -62,14 +62,15 @@ void find_instance_surface(const ShapeSet& shapes, const Vec3f& origin, const Ve
   }
   // Spheres and discs are used with one scale for all axes: they are the same in scene space.
   const bool sphere = hit.geometry == kSphereGeometry;
-  const Imath::V4f& round = sphere ? group.spheres.center_radius[hit.primitive]
-                                   : group.discs.center_radius[hit.primitive];
+  const Imath::V4f& round =
+      sphere ? group.spheres.center_radius[hit.primitive] : group.discs.center_radius[hit.primitive];
   const Vec3d center = transform.point({round.x, round.y, round.z});
   const double radius = round.w * transform.scale();
   if (sphere) {
     detail::sphere_surface(center, radius, origin, direction, hit, point);
     // The center's own coordinates count in group space, where they may be larger than here.
-    const double largest = std::max(std::abs(double(round.x)), std::max(std::abs(double(round.y)), std::abs(double(round.z))));
+    const double largest =
+        std::max(std::abs(double(round.x)), std::max(std::abs(double(round.y)), std::abs(double(round.z))));
     point.clearance += static_cast<float>(kSurfaceError * largest * transform.scale());
   } else {
     const Vec3d n(group.discs.normal[hit.primitive]);

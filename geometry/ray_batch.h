@@ -91,9 +91,7 @@ class HitBatch {
     has_instances_ = false;
   }
 
-  Hit operator[](std::size_t i) const {
-    return {geometry[i], primitive[i], u[i], v[i], distance[i], instance[i]};
-  }
+  Hit operator[](std::size_t i) const { return {geometry[i], primitive[i], u[i], v[i], distance[i], instance[i]}; }
   void set(std::size_t i, const Hit& hit) {
     geometry[i] = hit.geometry, primitive[i] = hit.primitive, u[i] = hit.u, v[i] = hit.v, distance[i] = hit.distance;
     instance[i] = hit.instance;

@@ -1,6 +1,6 @@
 // The shapes of a scene in tracing form, all in scene space: world space less `origin`, so that a scene far from the
-// world's origin loses nothing to float. Spheres, discs and planes stand in one array each. Groups hold shapes in a space
-// of their own and are used, as often as one likes, through instances.
+// world's origin loses nothing to float. Spheres, discs and planes stand in one array each. Groups hold shapes in a
+// space of their own and are used, as often as one likes, through instances.
 #pragma once
 
 #include <Imath/ImathVec.h>

@@ -211,8 +211,7 @@ void SampleTracer::State::collect_hits(bool eye) {
     if (kFeatures.instances && instanced && hit.instance != kNoInstance) {
       const Instance& instance = shapes.instances[hit.instance];
       object = instance.object;
-      material_index =
-          scene.instance_material(instance, shapes.shape_of(hit.geometry, hit.primitive, hit.instance));
+      material_index = scene.instance_material(instance, shapes.shape_of(hit.geometry, hit.primitive, hit.instance));
       find_instance_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     } else {
       object = shapes.shape_of(hit.geometry, hit.primitive);

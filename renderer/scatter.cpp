@@ -68,8 +68,7 @@ Ground ground_at(const TriangleMesh& terrain, const TerrainGrid& grid, double u,
     const bool upper = fx + fz <= 1;  // a b c, else b c d
     along_x = upper ? position(b) - position(a) : position(d) - position(c);
     along_z = upper ? position(c) - position(a) : position(d) - position(b);
-    p = upper ? position(a) + along_x * fx + along_z * fz
-              : position(d) - along_x * (1 - fx) - along_z * (1 - fz);
+    p = upper ? position(a) + along_x * fx + along_z * fz : position(d) - along_x * (1 - fx) - along_z * (1 - fz);
   }
   Vec3d normal = along_z.cross(along_x);
   if (normal.y < 0) normal = -normal;

@@ -205,14 +205,14 @@ struct ScatterShape {
   std::int64_t count = 100;  ///< at most; places that do not suit are tried again a limited number of times
   double least_scale = 0.8, largest_scale = 1.2;
   double lowest = -kLargestScatterHeight, highest = kLargestScatterHeight;  ///< world y of the places taken
-  double steepest = 35;  ///< slope, degrees
+  double steepest = 35;                                                     ///< slope, degrees
   double sink = 0.1;     ///< how deep each stands in the ground, scene units
   double clearings = 0;  ///< share of the ground that stays empty, in patches, [0, 1]
   double clearing_size = 1;
   std::uint32_t seed = 1980;
 };
-using ShapeKind = std::variant<MeshShape, SphereShape, PlaneShape, DiscShape, TerrainShape, SphereFlakeShape,
-                               TreeShape, InstanceShape, ScatterShape>;
+using ShapeKind = std::variant<MeshShape, SphereShape, PlaneShape, DiscShape, TerrainShape, SphereFlakeShape, TreeShape,
+                               InstanceShape, ScatterShape>;
 
 struct ShapeDescription {
   std::string name;

@@ -176,14 +176,16 @@ struct Alternative<TreeShape> {
 template <>
 struct Alternative<InstanceShape> {
   static constexpr std::string_view name = "instance",
-                                    text = "one use of a group of shapes; a material given here takes the place of all "
-                                           "of the group's";
+                                    text =
+                                        "one use of a group of shapes; a material given here takes the place of all "
+                                        "of the group's";
 };
 template <>
 struct Alternative<ScatterShape> {
   static constexpr std::string_view name = "scatter",
-                                    text = "uses of a group spread over a terrain, upright, each turned and scaled at "
-                                           "random; as instance";
+                                    text =
+                                        "uses of a group spread over a terrain, upright, each turned and scaled at "
+                                        "random; as instance";
 };
 
 // --- forms that exist in files only -------------------------------------------------------------------------
@@ -520,11 +522,9 @@ void visit_fields(Visitor& visit, T& tree) {
               .text = "Number of leaves, or of sprays of needles; two triangles each",
               .range = {1, 10'000'000}},
         tree.leaves);
-  visit(Field{.key = "leaf_size",
-              .text = "Length of a leaf or spray, about",
-              .unit = "scene units",
-              .range = kPositive},
-        tree.leaf_size);
+  visit(
+      Field{.key = "leaf_size", .text = "Length of a leaf or spray, about", .unit = "scene units", .range = kPositive},
+      tree.leaf_size);
   visit(Field{.key = "seed", .text = "Another number, another tree", .range = {0, 4294967295.0}}, tree.seed);
 }
 
@@ -561,7 +561,8 @@ void visit_fields(Visitor& visit, T& scatter) {
 template <class Visitor, Is<ShapeDescription> T>
 void visit_fields(Visitor& visit, T& shape) {
   visit.tagged(Field{.key = kTypeKey, .text = "Kind of shape", .required = true}, shape.kind);
-  visit(Field{.key = "material", .text = "Name of a material of this file",
+  visit(Field{.key = "material",
+              .text = "Name of a material of this file",
               .absent = "the default material; of instances: each shape's own"},
         shape.material);
   visit(
@@ -612,17 +613,18 @@ void visit_fields(Visitor& visit, T& scene) {
 
 /// A struct with a table.
 template <class T>
-concept Table =
-    Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> || Is<T, CameraDescription> ||
-    Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, HighlightDescription> || Is<T, MaterialDescription> ||
-    Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, GroupDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
+concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> ||
+    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, HighlightDescription> ||
+    Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, GroupDescription> ||
+    Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.
 template <class T>
 concept Named = requires(T& t) {
   t.name;
 }
-&&(Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, MaterialDescription> || Is<T, ShapeDescription> || Is<T, GroupDescription>);
+&&(Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, MaterialDescription> || Is<T, ShapeDescription> ||
+   Is<T, GroupDescription>);
 
 /// What a named element is called in messages: "material" of "materials".
 template <Named T>

@@ -82,8 +82,7 @@ double uniform_scale(const Matrix44d& m, const std::string& kind, const SourceLo
                        std::abs(x.dot(y)) <= tolerance && std::abs(x.dot(z)) <= tolerance &&
                        std::abs(y.dot(z)) <= tolerance;
   if (!uniform || !(scale > 0))
-    throw Error(ErrorKind::bad_input, where,
-                kind + " takes a transform with one scale for all axes");
+    throw Error(ErrorKind::bad_input, where, kind + " takes a transform with one scale for all axes");
   return scale;
 }
 
@@ -370,9 +369,9 @@ void move_to_space(Assembly& assembly, const Vec3d& origin, BoundedShapes& shape
 Bounds3d transformed_bounds(const Bounds3d& box, const Matrix44d& m) {
   Bounds3d result;
   for (int corner = 0; corner < 8; ++corner)
-    result.extendBy(transformed_point({corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                       corner & 4 ? box.max.z : box.min.z},
-                                      m));
+    result.extendBy(transformed_point(
+        {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y, corner & 4 ? box.max.z : box.min.z},
+        m));
   return result;
 }
 
@@ -491,11 +490,9 @@ Instance make_instance(const Matrix44d& transform, const GroupAssembly& group, c
   // NaN fails the comparisons.
   if (!(determinant >= kLeastDeterminant && determinant <= kMostDeterminant))
     refuse("scales", "by less than 1e-10 or more than 1e10");
-  if (!(single.cancellation() <= kMostCancellation))
-    refuse("flattens", "so much that single precision cannot undo it");
+  if (!(single.cancellation() <= kMostCancellation)) refuse("flattens", "so much that single precision cannot undo it");
   if (group.has_round)
-    uniform_scale(transform, "an instance of the group \"" + group_name + "\", which holds spheres or discs,",
-                  where);
+    uniform_scale(transform, "an instance of the group \"" + group_name + "\", which holds spheres or discs,", where);
   return instance;
 }
 

@@ -119,13 +119,16 @@ SceneDescription instanced_scene() {
     result.transform = transform;
     return result;
   };
-  scene.groups.push_back({"balls",
-                          {shape(SphereShape{{-0.6, 0, 0}, 0.5}, "glass"), shape(SphereShape{{0.5, 0, 0}, 0.4}, "mirror"),
-                           shape(DiscShape{{0, 0.8, 0}, {0, 1, 0.3}, 0.4}, "dull")},
-                          {}});
-  scene.groups.push_back({"globe", {mesh_shape(globe_mesh(0.5, 24, 12), "dull", NormalSource::smooth)}, {}});
   scene.groups.push_back(
-      {"both", {use("balls", translation({0, 1, 0})), use("globe", scaling({1, -0.4, 0.7})), use("globe", translation({1, 0, 0}), "glass")}, {}});
+      {"balls",
+       {shape(SphereShape{{-0.6, 0, 0}, 0.5}, "glass"), shape(SphereShape{{0.5, 0, 0}, 0.4}, "mirror"),
+        shape(DiscShape{{0, 0.8, 0}, {0, 1, 0.3}, 0.4}, "dull")},
+       {}});
+  scene.groups.push_back({"globe", {mesh_shape(globe_mesh(0.5, 24, 12), "dull", NormalSource::smooth)}, {}});
+  scene.groups.push_back({"both",
+                          {use("balls", translation({0, 1, 0})), use("globe", scaling({1, -0.4, 0.7})),
+                           use("globe", translation({1, 0, 0}), "glass")},
+                          {}});
   for (int i = 0; i < 12; ++i) {
     Matrix44d turned;
     turned.rotate(Vec3d(0.1 * i, 0.7 * i, 0));

@@ -27,7 +27,8 @@ TEST(Scatter, StandsOnTheTerrainsTriangles) {
   ASSERT_EQ(uses.size(), 2000u);
   for (const Matrix44d& use : uses) {
     const Vec3d foot(use[3][0], use[3][1], use[3][2]);
-    const Hit hit = embree.intersect_one(Vec3f(foot + Vec3d(0, 5, 0)), {0, -1, 0}, std::numeric_limits<float>::infinity());
+    const Hit hit =
+        embree.intersect_one(Vec3f(foot + Vec3d(0, 5, 0)), {0, -1, 0}, std::numeric_limits<float>::infinity());
     ASSERT_NE(hit.geometry, kNoGeometry);
     // Slopes of up to 20 turn half an ulp of x into as much height.
     EXPECT_NEAR(hit.distance, 5, 5e-5) << foot.x << " " << foot.z;

@@ -332,8 +332,7 @@ Count instance_false_hits(const Setting& setting, Primitive primitive, bool leve
             ++count.left;
             if (hits.geometry[k] == kNoGeometry || hits.instance[k] != hit.instance) continue;
             if (primitive == Primitive::sphere && side < 0) {
-              const double chord =
-                  std::abs(Vec3d(rays.direction(k)).dot(Vec3d(point.geometric_normal))) * setting.size;
+              const double chord = std::abs(Vec3d(rays.direction(k)).dot(Vec3d(point.geometric_normal))) * setting.size;
               if (hits.distance[k] >= chord / 2 || chord <= 4 * point.clearance) continue;
             }
             ++count.false_hits;
@@ -353,8 +352,7 @@ TEST(SelfIntersection, NoRayHitsTheInstanceItLeft) {
       for (const bool level : {false, true}) {
         const Count count = instance_false_hits(setting, primitive, level, random);
         EXPECT_EQ(count.false_hits, 0) << "primitive " << static_cast<int>(primitive) << " size " << setting.size
-                                       << " place " << setting.place << " of " << count.left
-                                       << (level ? " level" : "");
+                                       << " place " << setting.place << " of " << count.left << (level ? " level" : "");
         EXPECT_GT(count.left, 3000) << "primitive " << static_cast<int>(primitive) << " size " << setting.size
                                     << " place " << setting.place;
       }
