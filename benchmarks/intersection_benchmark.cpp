@@ -192,11 +192,10 @@ RayRecord record_of(const RaySet& rays) {
 
 ReplayCalls calls_of(const EmbreeIntersector& embree) {
   ReplayCalls calls;
-  calls[static_cast<std::size_t>(RayClass::coherent_nearest)] = ReplayCall::coherent_packets;
-  calls[static_cast<std::size_t>(RayClass::coherent_occlusion)] =
-      embree.takes_shadow_rays_singly() ? ReplayCall::single_rays : ReplayCall::coherent_packets;
-  calls[static_cast<std::size_t>(RayClass::incoherent_nearest)] = ReplayCall::incoherent_packets;
-  calls[static_cast<std::size_t>(RayClass::incoherent_occlusion)] = ReplayCall::incoherent_packets;
+  calls.fill(ReplayCall::incoherent_packets);
+  if (embree.follows_packets_together())
+    for (const RayClass coherent : {RayClass::coherent_nearest, RayClass::coherent_occlusion})
+      calls[static_cast<std::size_t>(coherent)] = ReplayCall::coherent_packets;
   return calls;
 }
 

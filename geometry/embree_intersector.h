@@ -37,8 +37,9 @@ class EmbreeIntersector final : public RayIntersector {
   Hit intersect_one(const Vec3f& origin, const Vec3f& direction, float max_distance) const noexcept;
   bool occluded_one(const Vec3f& origin, const Vec3f& direction, float max_distance) const noexcept;
 
-  /// Whether coherent occlusion goes by single rays: a function of the scene alone.
-  bool takes_shadow_rays_singly() const noexcept;
+  /// Whether packets of rays that run alike are followed together, with Embree's coherent flag; else every packet goes
+  /// without it. A function of the scene alone.
+  bool follows_packets_together() const noexcept;
 
   /// e.g. "Embree 3.13.5".
   static std::string version();

@@ -25,7 +25,10 @@ struct EmbreeIntersector::State {
   embree::SceneHandle scene;
   GeometryId first_instance = 0;  ///< Embree's id of ShapeSet::instances[0]
   bool instanced = false;
-  bool single_shadow_rays = false;
+  bool together = true;  ///< see follows_packets_together()
+
+  /// What Embree is told of a batch.
+  Coherence told(Coherence coherence) const { return together ? coherence : Coherence::incoherent; }
   bool wide = true;  ///< 8-wide packets; else 4
 };
 

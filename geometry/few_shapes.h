@@ -63,7 +63,8 @@ inline float sphere_distance(const Imath::V4f& sphere, const Vec3f& origin, cons
   const double half_chord = std::sqrt(square > 0 ? square : 0);
   const double near = along - half_chord, far = along + half_chord;
   const double distance = near > 0 ? near : far;
-  return (square >= 0) & (distance > 0) & (distance < 3e38) ? static_cast<float>(distance) : -1.0f;
+  const bool meets = (square >= 0) & (distance > 0) & (distance < 3e38);
+  return meets ? static_cast<float>(distance) : -1.0f;
 }
 
 /// Distance along the ray to the disc, > 0, or -1.
@@ -73,7 +74,8 @@ inline float disc_distance(const Imath::V4f& disc, const Vec3f& normal, const Ve
   const double x = double(origin.x) + double(distance) * direction.x - center.x,
                y = double(origin.y) + double(distance) * direction.y - center.y,
                z = double(origin.z) + double(distance) * direction.z - center.z;
-  return (distance > 0) & (x * x + y * y + z * z <= double(disc.w) * disc.w) ? distance : -1.0f;
+  const bool meets = (distance > 0) & (x * x + y * y + z * z <= double(disc.w) * disc.w);
+  return meets ? distance : -1.0f;
 }
 
 void intersect_few(const FewShapes& few, const RayBatch& rays, FewHits& hits) noexcept;
