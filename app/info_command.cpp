@@ -99,21 +99,20 @@ Totals totals(const SceneSummary& summary) {
 }
 
 Json json_of(const ShapeSummary& shape) {
-  return {{"id", shape.id},
-          {"name", shape.name},
-          {"kind", shape.kind},
-          {"material", shape.material},
-          {"faces",
-           {{"triangles", shape.faces_by_size[0]},
-            {"quads", shape.faces_by_size[1]},
-            {"larger", shape.faces_by_size[2]}}},
-          {"traced_triangles", shape.triangles},
-          {"spheres", shape.spheres},
-          {"instances", shape.instances},
-          {"first_extra_id", shape.first_extra_id},
-          {"instanced_triangles", shape.instanced_triangles},
-          {"instanced_spheres", shape.instanced_spheres},
-          {"bounds", json_of(shape.bounds)}};
+  return {
+      {"id", shape.id},
+      {"name", shape.name},
+      {"kind", shape.kind},
+      {"material", shape.material},
+      {"faces",
+       {{"triangles", shape.faces_by_size[0]}, {"quads", shape.faces_by_size[1]}, {"larger", shape.faces_by_size[2]}}},
+      {"traced_triangles", shape.triangles},
+      {"spheres", shape.spheres},
+      {"instances", shape.instances},
+      {"first_extra_id", shape.first_extra_id},
+      {"instanced_triangles", shape.instanced_triangles},
+      {"instanced_spheres", shape.instanced_spheres},
+      {"bounds", json_of(shape.bounds)}};
 }
 
 std::string info_json(const Scene& scene, const InfoOptions& options) {
@@ -214,8 +213,8 @@ std::string info_text(const Scene& scene, const InfoOptions& options) {
       const GroupSummary& group = summary.groups[i];
       std::uint64_t triangles = 0, spheres = 0;
       for (const ShapeSummary& shape : group.shapes) triangles += shape.triangles, spheres += shape.spheres;
-      rows.push_back({group.name, grouped(group.instances), grouped(group.shapes.size()), grouped(triangles),
-                      grouped(spheres)});
+      rows.push_back(
+          {group.name, grouped(group.instances), grouped(group.shapes.size()), grouped(triangles), grouped(spheres)});
     }
     text += table(rows);
     text += fmt::format("instances  {}, which stand for {} triangles and {} spheres\n", grouped(summary.instances),

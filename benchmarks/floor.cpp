@@ -43,7 +43,8 @@ std::vector<Figure> measure_floor(const MeasureContext& context) {
   for (const bool with_mesh : {false, true}) {
     Scene scene = prepared(with_mesh ? reference_scene_with_mesh() : reference_scene());
     const RecordedRender recorded = record_render(scene);
-    const BareReplay replay(embree_of(scene), recorded.record);
+    const std::unique_ptr<EmbreeIntersector> embree = plain_embree(scene);
+    const BareReplay replay(*embree, recorded.record);
     for (const int threads : {1, 2}) {
       context.progress(fmt::format("floor: {}, threads {}", scene.description.name, threads));
       figures.push_back(floor_figure(scene, recorded.record, replay, threads));

@@ -177,6 +177,28 @@ void look_at_occlusion(const RayBatch& batch, PassResult& result) {
 
 }  // namespace
 
+RayRecord record_of(const RaySet& rays) {
+  const bool coherent = rays.coherence == Coherence::coherent;
+  const RayClass ray_class = rays.occlusion ? (coherent ? RayClass::coherent_occlusion : RayClass::incoherent_occlusion)
+                                            : (coherent ? RayClass::coherent_nearest : RayClass::incoherent_nearest);
+  RayRecord record;
+  for (const RayBatch& batch : rays.batches) {
+    record.batches.push_back({ray_class, record.rays.size(), batch.size});
+    for (std::size_t i = 0; i < batch.size; ++i)
+      record.rays.push_back({batch.origin(i), batch.direction(i), batch.max_distance[i]});
+  }
+  return record;
+}
+
+ReplayCalls calls_of(const EmbreeIntersector& embree) {
+  ReplayCalls calls;
+  calls.fill(ReplayCall::incoherent_packets);
+  if (embree.follows_packets_together())
+    for (const RayClass coherent : {RayClass::coherent_nearest, RayClass::coherent_occlusion})
+      calls[static_cast<std::size_t>(coherent)] = ReplayCall::coherent_packets;
+  return calls;
+}
+
 PassResult batched_pass(const Scene& scene, const RaySet& rays, int threads) {
   const RayIntersector& tracer = *scene.intersector;
   if (rays.occlusion)

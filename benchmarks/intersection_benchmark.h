@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "benchmarks/measurement.h"
+#include "geometry/embree_replay.h"
 #include "geometry/ray_batch.h"
 #include "geometry/ray_intersector.h"
 #include "renderer/scene.h"
@@ -64,5 +65,11 @@ struct IntersectionFigure {
 std::vector<IntersectionFigure> measure_intersection(const Scene& scene,
                                                      const std::array<RaySet, kBenchmarkRaysCount>& rays, int threads,
                                                      int repetitions, const std::atomic<bool>* stop = nullptr);
+
+/// The rays as a record that can be replayed.
+RayRecord record_of(const RaySet& rays);
+
+/// The calls that the seam makes for each class of rays, but for mixed packets, which get theirs one by one.
+ReplayCalls calls_of(const EmbreeIntersector& embree);
 
 }  // namespace raytree::benchmarks

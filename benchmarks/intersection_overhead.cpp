@@ -12,43 +12,24 @@ namespace {
 
 constexpr double kShareOfEmbree = 0.95;
 
-RayClass class_of(const RaySet& rays) {
-  if (rays.occlusion)
-    return rays.coherence == Coherence::coherent ? RayClass::coherent_occlusion : RayClass::incoherent_occlusion;
-  return rays.coherence == Coherence::coherent ? RayClass::coherent_nearest : RayClass::incoherent_nearest;
-}
-
-RayRecord record_of(const RaySet& rays) {
-  RayRecord record;
-  for (const RayBatch& batch : rays.batches) {
-    record.batches.push_back({class_of(rays), record.rays.size(), batch.size});
-    for (std::size_t i = 0; i < batch.size; ++i)
-      record.rays.push_back({batch.origin(i), batch.direction(i), batch.max_distance[i]});
-  }
-  return record;
-}
-
 }  // namespace
 
 std::vector<Figure> measure_intersection_overhead(const MeasureContext& context) {
   const Scene scene = prepared(reference_scene_with_mesh());
   const std::array<RaySet, kBenchmarkRaysCount> sets = benchmark_rays(scene);
-  ReplayCalls calls;
-  calls[static_cast<std::size_t>(RayClass::coherent_nearest)] = ReplayCall::coherent_packets;
-  calls[static_cast<std::size_t>(RayClass::coherent_occlusion)] = ReplayCall::coherent_packets;
-  calls[static_cast<std::size_t>(RayClass::incoherent_nearest)] = ReplayCall::incoherent_packets;
-  calls[static_cast<std::size_t>(RayClass::incoherent_occlusion)] = ReplayCall::incoherent_packets;
+  const ReplayCalls calls = calls_of(embree_of(scene));
+  const std::unique_ptr<EmbreeIntersector> embree = plain_embree(scene);
   std::vector<Figure> figures;
   // Mixed packets get their call one by one: there is no one call to compare them with.
   for (const BenchmarkRays kind : {BenchmarkRays::primary, BenchmarkRays::shadow, BenchmarkRays::bounce}) {
     context.progress(fmt::format("bench: {} rays", name_of(kind)));
     const RaySet& rays = sets[static_cast<std::size_t>(kind)];
     const RayRecord record = record_of(rays);
-    const BareReplay replay(embree_of(scene), record);
+    const BareReplay replay(*embree, record);
     std::uint64_t bare_hits = 0, hits = 0;
     const auto bare = [&] {
       const ReplayTally tally = replay_pass(replay, calls, 1);
-      bare_hits = tally.hits[static_cast<std::size_t>(class_of(rays))];
+      bare_hits = tally.hits[static_cast<std::size_t>(record.batches.front().ray_class)];
       return tally.total_seconds();
     };
     const auto batched = [&] {

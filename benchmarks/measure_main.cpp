@@ -120,6 +120,10 @@ int run(const std::vector<std::string>& words) {
     std::printf("%s\n", bare_large_json().c_str());
     return kSuccess;
   }
+  if (words.size() == 1 && words[0] == kInstancesMemoryFlag) {
+    std::printf("%s\n", instances_memory_json().c_str());
+    return kSuccess;
+  }
   std::vector<const Row*> rows;
   std::string json_file;
   for (std::size_t i = 0; i < words.size(); ++i) {

@@ -7,8 +7,7 @@ namespace raytree::benchmarks {
 void RecordingIntersector::intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept {
   tracer_.intersect(rays, coherence, hits);
   std::uint64_t count = 0;
-  for (std::size_t i = 0; i < rays.size; ++i)
-    count += hits.geometry[i] != kNoGeometry && hits.geometry[i] != kPlaneGeometry;
+  for (std::size_t i = 0; i < rays.size; ++i) count += hits.geometry[i] != kNoGeometry;
   note(rays, coherence == Coherence::coherent ? RayClass::coherent_nearest : RayClass::incoherent_nearest, count);
 }
 
@@ -43,6 +42,12 @@ RecordedRender record_render(Scene& scene) {
 
 const EmbreeIntersector& embree_of(const Scene& scene) {
   return dynamic_cast<const EmbreeIntersector&>(*scene.intersector);
+}
+
+std::unique_ptr<EmbreeIntersector> plain_embree(const Scene& scene) {
+  EmbreeOptions options;
+  options.all_in_embree = true;
+  return std::make_unique<EmbreeIntersector>(*scene.shapes, options);
 }
 
 }  // namespace raytree::benchmarks

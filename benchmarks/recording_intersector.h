@@ -40,4 +40,7 @@ RecordedRender record_render(Scene& scene);
 /// The scene's tracer, which is Embree's unless a benchmark put another in its place.
 const EmbreeIntersector& embree_of(const Scene& scene);
 
+/// Embree over the scene's shapes with all but planes in it, as anyone would build it: what bare calls are made on.
+std::unique_ptr<EmbreeIntersector> plain_embree(const Scene& scene);
+
 }  // namespace raytree::benchmarks

@@ -46,6 +46,47 @@ SceneDescription terrain_scene(std::int64_t triangles) {
   return scene;
 }
 
+SceneDescription instances_scene() {
+  SceneDescription scene;
+  scene.name = "instances";
+  scene.image = {1280, 960};
+  scene.render.antialias = {Antialiasing::Method::none, 1};
+  CameraDescription camera;
+  camera.name = "main";
+  camera.position = {-30, 40, 130};
+  camera.target = {0, 0, 0};
+  scene.cameras.push_back(camera);
+  LightDescription sun;
+  sun.name = "sun";
+  sun.kind = DirectionalLight{{-1, -1, -1}};
+  scene.lights.push_back(sun);
+  GroupDescription group;
+  group.name = "hill";
+  TerrainShape terrain;
+  terrain.triangles = 1'000'000;
+  terrain.size = 1;
+  terrain.height = 0.4;
+  ShapeDescription hill;
+  hill.name = "hill";
+  hill.kind = terrain;
+  group.shapes.push_back(hill);
+  scene.groups.push_back(group);
+  constexpr int kEdge = 100;
+  for (int z = 0; z < kEdge; ++z)
+    for (int x = 0; x < kEdge; ++x) {
+      ShapeDescription use;
+      use.name = fmt::format("hill {} {}", x, z);
+      use.kind = InstanceShape{"hill"};
+      Matrix44d scale, turn, place;
+      scale.setScale(1.1 + 0.07 * ((3 * x + 5 * z) % 7));
+      turn.rotate(Vec3d(0.05 * ((x + 2 * z) % 5), 0.7 * x + 1.3 * z, 0));
+      place.setTranslation(Vec3d(x - kEdge / 2, 0.03 * ((7 * x + 3 * z) % 11), z - kEdge / 2));
+      use.transform = scale * turn * place;
+      scene.shapes.push_back(use);
+    }
+  return scene;
+}
+
 SceneDescription trivial_scene() {
   SceneDescription scene;
   scene.name = "trivial";

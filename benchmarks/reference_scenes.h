@@ -20,6 +20,10 @@ SceneDescription terrain_scene(std::int64_t triangles);
 inline constexpr const char* kTerrainSceneName = "terrain";                   ///< as `raytree render` takes it
 inline constexpr const char* kTerrainCountPath = "shapes.terrain.triangles";  ///< as `--set` takes it
 
+/// 10,000 instances of a terrain of a million triangles, turned and scaled each in its own way, side by side before the
+/// camera; 1280x960 without anti-aliasing.
+SceneDescription instances_scene();
+
 /// One sphere, 64x64: what is left of a render's time is the program's start.
 SceneDescription trivial_scene();
 

@@ -27,15 +27,25 @@ std::vector<Figure> measure_time_split(const MeasureContext& context);
 std::vector<Figure> measure_loading(const MeasureContext& context);
 std::vector<Figure> measure_povray(const MeasureContext& context);
 std::vector<Figure> measure_intersection_overhead(const MeasureContext& context);
+std::vector<Figure> measure_instances(const MeasureContext& context);
+std::vector<Figure> measure_types(const MeasureContext& context);
 
 struct Row {
   const char* name;
   std::vector<Figure> (*measure)(const MeasureContext&);
 };
 inline constexpr Row kRows[] = {
-    {"floor", measure_floor},      {"waves", measure_waves},     {"threads", measure_threads},
-    {"start", measure_start},      {"large", measure_large},     {"idle", measure_idle},
-    {"split", measure_time_split}, {"loading", measure_loading}, {"bench", measure_intersection_overhead},
+    {"floor", measure_floor},
+    {"waves", measure_waves},
+    {"threads", measure_threads},
+    {"start", measure_start},
+    {"large", measure_large},
+    {"idle", measure_idle},
+    {"split", measure_time_split},
+    {"loading", measure_loading},
+    {"bench", measure_intersection_overhead},
+    {"instances", measure_instances},
+    {"types", measure_types},
     {"povray", measure_povray},
 };
 
@@ -43,5 +53,9 @@ inline constexpr Row kRows[] = {
 /// with Embree alone, traces the picture's rays by bare calls; JSON of seconds and bytes.
 std::string bare_large_json();
 inline constexpr const char* kBareLargeFlag = "--bare-large";  ///< makes raytree_measure print it
+
+/// What `instances` says of memory, measured in a process of its own: bytes before and after preparing its scene.
+std::string instances_memory_json();
+inline constexpr const char* kInstancesMemoryFlag = "--instances-memory";  ///< makes raytree_measure print it
 
 }  // namespace raytree::benchmarks

@@ -17,6 +17,7 @@ struct EmbreeOptions {
   bool robust = true;    ///< watertight edges at .85-.91 of the speed
   bool compact = false;  ///< half the memory at .6 of the speed
   Quality quality = Quality::medium;
+  bool all_in_embree = false;               ///< spheres and discs too where they are few: the plain way, for comparison
   const std::atomic<bool>* stop = nullptr;  ///< ends the build early
 };
 
@@ -35,6 +36,10 @@ class EmbreeIntersector final : public RayIntersector {
   /// One ray by Embree's single-ray calls: for recursion, which benchmarks compare with.
   Hit intersect_one(const Vec3f& origin, const Vec3f& direction, float max_distance) const noexcept;
   bool occluded_one(const Vec3f& origin, const Vec3f& direction, float max_distance) const noexcept;
+
+  /// Whether packets of rays that run alike are followed together, with Embree's coherent flag; else every packet goes
+  /// without it. A function of the scene alone.
+  bool follows_packets_together() const noexcept;
 
   /// e.g. "Embree 3.13.5".
   static std::string version();

@@ -6,7 +6,7 @@
 
 #include "geometry/embree_packets.h"
 #include "geometry/embree_state.h"
-#include "geometry/plane_intersection.h"
+#include "geometry/few_shapes.h"
 
 namespace raytree {
 namespace {
@@ -47,16 +47,19 @@ class Replayer {
  public:
   Replayer(RTCScene scene, Workspace<Width>& work) : scene_(scene), work_(work) {}
 
-  double nearest(const Ray* rays, std::size_t size, ReplayCall call, std::uint64_t& hits) {
+  double nearest(const Ray* rays, const std::uint8_t* stopped_before, std::size_t size, ReplayCall call,
+                 std::uint64_t& hits) {
     Query query(call == ReplayCall::coherent_packets);
     double seconds = 0;
+    const auto stopped = [&](std::size_t i) { return stopped_before != nullptr && stopped_before[i] != 0; };
     if (call == ReplayCall::single_rays) {
       for (std::size_t i = 0; i < size; ++i)
         work_.single_ray_hits[i] = embree::single_ray_hit(rays[i].origin, rays[i].direction, rays[i].max_distance);
       const auto start = Clock::now();
       for (std::size_t i = 0; i < size; ++i) query.intersect(scene_, work_.single_ray_hits[i]);
       seconds = since(start);
-      for (std::size_t i = 0; i < size; ++i) hits += work_.single_ray_hits[i].hit.geomID != RTC_INVALID_GEOMETRY_ID;
+      for (std::size_t i = 0; i < size; ++i)
+        hits += work_.single_ray_hits[i].hit.geomID != RTC_INVALID_GEOMETRY_ID || stopped(i);
       return seconds;
     }
     const std::size_t packets = fill(rays, size, [&](std::size_t packet, int lane, const Ray& ray) {
@@ -67,15 +70,15 @@ class Replayer {
     for (std::size_t p = 0; p < packets; ++p) query.intersect(scene_, work_.valid[p], work_.ray_hits[p]);
     seconds = since(start);
     for (std::size_t i = 0; i < size; ++i)
-      hits += work_.ray_hits[i / Width].hit.geomID[i % Width] != RTC_INVALID_GEOMETRY_ID;
+      hits += work_.ray_hits[i / Width].hit.geomID[i % Width] != RTC_INVALID_GEOMETRY_ID || stopped(i);
     return seconds;
   }
 
-  double occlusion(const Ray* rays, const std::uint8_t* behind_plane, std::size_t size, ReplayCall call,
+  double occlusion(const Ray* rays, const std::uint8_t* stopped_before, std::size_t size, ReplayCall call,
                    std::uint64_t& hits) {
     Query query(call == ReplayCall::coherent_packets);
     double seconds = 0;
-    const auto stopped = [&](std::size_t i) { return behind_plane != nullptr && behind_plane[i] != 0; };
+    const auto stopped = [&](std::size_t i) { return stopped_before != nullptr && stopped_before[i] != 0; };
     if (call == ReplayCall::single_rays) {
       for (std::size_t i = 0; i < size; ++i)
         work_.single_rays[i] = embree::single_ray(rays[i].origin, rays[i].direction, rays[i].max_distance);
@@ -112,12 +115,12 @@ class Replayer {
 };
 
 template <int Width>
-double replay_block(RTCScene scene, const Ray* rays, const std::uint8_t* behind_plane, std::size_t size,
+double replay_block(RTCScene scene, const Ray* rays, const std::uint8_t* stopped_before, std::size_t size,
                     RayClass ray_class, ReplayCall call, std::uint64_t& hits) {
   thread_local Workspace<Width> work;
   Replayer<Width> replayer(scene, work);
-  return is_occlusion(ray_class) ? replayer.occlusion(rays, behind_plane, size, call, hits)
-                                 : replayer.nearest(rays, size, call, hits);
+  return is_occlusion(ray_class) ? replayer.occlusion(rays, stopped_before, size, call, hits)
+                                 : replayer.nearest(rays, stopped_before, size, call, hits);
 }
 
 }  // namespace
@@ -169,20 +172,15 @@ void BareReplay::add_chunk(const RayRecord& record, std::size_t first_batch, std
 }
 
 void BareReplay::append(const RayRecord& record, const RayRecord::Batch& batch) {
-  const std::vector<Plane>& planes = intersector_.state_->shapes->planes;
+  const FewShapes& few = intersector_.state_->few;
   for (std::size_t i = batch.first; i < batch.first + batch.size; ++i) {
     Ray ray = record.rays[i];
     if (!embree::traceable(ray.origin, ray.direction, ray.max_distance)) continue;
-    bool stopped = false;
-    for (const Plane& plane : planes) {
-      const float distance = plane_distance(plane, ray.origin, ray.direction);
-      if (!(distance >= 0 && distance < ray.max_distance)) continue;
-      stopped = true;
-      // The intersector shortens rays that look for the nearest hit, and asks for the whole of a shadow ray.
-      if (!is_occlusion(batch.ray_class)) ray.max_distance = distance;
-    }
+    const Hit nearest = intersect_few(few, ray.origin, ray.direction, ray.max_distance);
+    // The intersector shortens rays that look for the nearest hit, and asks for the whole of a shadow ray.
+    if (!is_occlusion(batch.ray_class)) ray.max_distance = nearest.distance;
     rays_.push_back(ray);
-    if (!planes.empty()) behind_plane_.push_back(stopped);
+    if (few.any()) stopped_.push_back(nearest.geometry != kNoGeometry);
   }
 }
 
@@ -193,7 +191,7 @@ void BareReplay::replay(std::size_t chunk, const ReplayCalls& calls, ReplayTally
     const auto c = static_cast<std::size_t>(segment->ray_class);
     for (std::size_t done = 0; done < segment->size; done += kBlock) {
       const std::size_t at = segment->first + done, size = std::min(kBlock, segment->size - done);
-      const std::uint8_t* stopped = behind_plane_.empty() ? nullptr : behind_plane_.data() + at;
+      const std::uint8_t* stopped = stopped_.empty() ? nullptr : stopped_.data() + at;
       const auto run = state.wide ? replay_block<8> : replay_block<4>;
       tally.seconds[c] +=
           run(state.scene.get(), rays_.data() + at, stopped, size, segment->ray_class, calls[c], tally.hits[c]);

@@ -32,7 +32,7 @@ struct RayRecord {
   };
   std::vector<Ray> rays;
   std::vector<Batch> batches;
-  std::array<std::uint64_t, kRayClassCount> hits{};  ///< nearest hits other than on planes; occluded rays
+  std::array<std::uint64_t, kRayClassCount> hits{};  ///< nearest hits; occluded rays
 
   std::array<std::uint64_t, kRayClassCount> ray_counts() const;
 };
@@ -54,8 +54,8 @@ struct ReplayTally {
 ///
 /// Packets are never smaller than those of the recorded run: eye rays keep the packets of their batches, all other
 /// classes are joined over the work of a few tiles, which fills packets that the run had to leave part empty. Rays
-/// that are not finite are left out, since the intersector asks Embree for none of them; planes, which Embree does not
-/// know, shorten the rays outside the clock as the intersector shortens them inside its own.
+/// that are not finite are left out, since the intersector asks Embree for none of them; planes and other shapes that
+/// Embree does not hold shorten the rays outside the clock as the intersector shortens them inside its own.
 class BareReplay {
  public:
   BareReplay(const EmbreeIntersector& intersector, const RayRecord& record);
@@ -83,7 +83,7 @@ class BareReplay {
 
   const EmbreeIntersector& intersector_;
   std::vector<RayRecord::Ray> rays_;
-  std::vector<std::uint8_t> behind_plane_;  ///< occlusion rays that a plane stops; [rays_] where there are planes
+  std::vector<std::uint8_t> stopped_;  ///< rays that a shape outside Embree stops; [rays_] where there are such
   std::vector<Segment> segments_;
   std::vector<Chunk> chunks_;
 };

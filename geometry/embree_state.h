@@ -8,11 +8,13 @@
 
 #include "geometry/embree_api.h"
 #include "geometry/embree_intersector.h"
+#include "geometry/few_shapes.h"
 
 namespace raytree {
 
 struct EmbreeIntersector::State {
   const ShapeSet* shapes = nullptr;
+  FewShapes few;  ///< that Embree does not hold
   std::atomic<std::ptrdiff_t> memory{0};
   std::atomic<std::ptrdiff_t> peak_memory{0};
   std::mutex error_mutex;
@@ -23,6 +25,10 @@ struct EmbreeIntersector::State {
   embree::SceneHandle scene;
   GeometryId first_instance = 0;  ///< Embree's id of ShapeSet::instances[0]
   bool instanced = false;
+  bool together = true;  ///< see follows_packets_together()
+
+  /// What Embree is told of a batch.
+  Coherence told(Coherence coherence) const { return together ? coherence : Coherence::incoherent; }
   bool wide = true;  ///< 8-wide packets; else 4
 };
 

@@ -85,7 +85,7 @@ Branch grown(const TreeLevel& level, const Vec3d& start, const Vec3d& direction,
 struct Skeleton {
   std::vector<Branch> branches;
   std::size_t first_leafy = 0;
-  Vec3d crown{0, 0, 0};     ///< its middle
+  Vec3d crown{0, 0, 0};       ///< its middle
   Vec3d flattening{1, 1, 1};  ///< of the crown's outward directions
 };
 
@@ -93,7 +93,8 @@ Skeleton broadleaf(const TreeParameters& parameters) {
   const double height = parameters.height;
   Skeleton skeleton;
   Random random(parameters.seed, 1);
-  skeleton.branches.push_back(grown(kBroadleafLevels[0], {0, 0, 0}, unit(Vec3d(random.uniform(-0.08, 0.08), 1, random.uniform(-0.08, 0.08))),
+  skeleton.branches.push_back(grown(kBroadleafLevels[0], {0, 0, 0},
+                                    unit(Vec3d(random.uniform(-0.08, 0.08), 1, random.uniform(-0.08, 0.08))),
                                     0.82 * height, 0.026 * height, 0.006 * height, {0, 0.1, 0}, 0.07, random));
   // Lengths over the parent's, angles off it, and where along it the first one stands.
   constexpr double kLength[] = {0, 0.52, 0.5, 0.42}, kAngle[] = {0, 0.95, 0.75, 0.8}, kFirst[] = {0, 0.34, 0.3, 0.25};
@@ -119,8 +120,8 @@ Skeleton broadleaf(const TreeParameters& parameters) {
         const double reach = l == 1 ? 1.15 - 0.75 * (share - kFirst[1]) : 1.05 - 0.35 * share;
         const double length = kLength[l] * parent_length * reach * random.uniform(0.8, 1.15);
         const double radius = 0.7 * parent.radius_at(std::min(share, 1.0));
-        skeleton.branches.push_back(grown(level, start, direction, length, radius, 0.3 * radius,
-                                          {0, l == 1 ? 0.55 : 0.3, 0}, 0.12, random));
+        skeleton.branches.push_back(
+            grown(level, start, direction, length, radius, 0.3 * radius, {0, l == 1 ? 0.55 : 0.3, 0}, 0.12, random));
       }
     }
     first = end;
@@ -134,8 +135,8 @@ Skeleton conifer(const TreeParameters& parameters) {
   const double height = parameters.height;
   Skeleton skeleton;
   Random random(parameters.seed, 2);
-  skeleton.branches.push_back(grown(kConiferLevels[0], {0, 0, 0}, {0, 1, 0}, height, 0.017 * height, 0.001 * height,
-                                    {0, 0, 0}, 0.008, random));
+  skeleton.branches.push_back(
+      grown(kConiferLevels[0], {0, 0, 0}, {0, 1, 0}, height, 0.017 * height, 0.001 * height, {0, 0, 0}, 0.008, random));
   const Branch trunk = skeleton.branches[0];
   const TreeLevel& level = kConiferLevels[1];
   const double spread = height * random.uniform(0.19, 0.24);
@@ -205,7 +206,8 @@ void add_leaf(const Vec3d& base, const Vec3d& way, const Vec3d& side, double len
   const Vec3d up = way.cross(side) * (outward.dot(way.cross(side)) < 0 ? -1 : 1);
   const Vec3d middle = base + way * (0.45 * length), fold = up * (0.25 * width);
   const auto first = std::uint32_t(mesh.positions.size());
-  for (const Vec3d& point : {base, middle + side * (width / 2) + fold, base + way * length, middle - side * (width / 2) + fold}) {
+  for (const Vec3d& point :
+       {base, middle + side * (width / 2) + fold, base + way * length, middle - side * (width / 2) + fold}) {
     mesh.positions.push_back(Vec3f(point));
     mesh.normals.push_back(Vec3f(unit(up * 0.45 + outward * 0.55)));
   }
@@ -251,7 +253,8 @@ TriangleMesh make_tree_leaves(const TreeParameters& parameters) {
   for (std::size_t i = 0; i < count; ++i) {
     Random random(parameters.seed, 16 + i);
     const double place = sum * (double(i) + random.uniform()) / double(count);
-    const std::size_t b = std::min(std::size_t(std::upper_bound(lengths.begin(), lengths.end(), place) - lengths.begin()), leafy.size() - 1);
+    const std::size_t b = std::min(
+        std::size_t(std::upper_bound(lengths.begin(), lengths.end(), place) - lengths.begin()), leafy.size() - 1);
     const double begin = b == 0 ? 0 : lengths[b - 1];
     const double share = std::clamp((place - begin) / (lengths[b] - begin), 0.0, 1.0);
     Vec3d along;

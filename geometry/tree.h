@@ -33,7 +33,9 @@ inline constexpr TreeLevel kConiferLevels[] = {{1, 12, 9}, {96, 5, 4}};
 /// Two triangles for each side of each segment of each branch: 7232 and 4056.
 constexpr std::int64_t tree_wood_triangles(TreeForm form) {
   std::int64_t sum = 0;
-  const auto add = [&](const TreeLevel& level) { sum += std::int64_t(2) * level.branches * level.segments * level.sides; };
+  const auto add = [&](const TreeLevel& level) {
+    sum += std::int64_t(2) * level.branches * level.segments * level.sides;
+  };
   if (form == TreeForm::broadleaf)
     for (const TreeLevel& level : kBroadleafLevels) add(level);
   else
@@ -45,8 +47,8 @@ constexpr std::int64_t tree_leaf_triangles(std::int64_t leaves) { return 2 * lea
 /// Tubes are open at both ends, normals smooth and outward.
 /// Both throw Error (bad_input) for parameters out of range. Results depend on the parameters alone.
 TriangleMesh make_tree_wood(const TreeParameters& parameters);
-/// Leaf i is triangles 2 i and 2 i + 1. Their normals lean away from the middle of the crown, which shades it as a whole:
-/// light finds a crown's lit side though its leaves point everywhere. Faces are wound to agree.
+/// Leaf i is triangles 2 i and 2 i + 1. Their normals lean away from the middle of the crown, which shades it as a
+/// whole: light finds a crown's lit side though its leaves point everywhere. Faces are wound to agree.
 TriangleMesh make_tree_leaves(const TreeParameters& parameters);
 
 }  // namespace raytree

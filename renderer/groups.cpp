@@ -67,7 +67,8 @@ class GroupChecker {
       refuse_(group, shape, "a group may not hold itself: " + chain + in_quotes(name));
     }
     if (chain_.size() >= kMostGroupLevels)
-      refuse_(group, shape, "groups stand within groups more than " + std::to_string(kMostGroupLevels) + " levels deep");
+      refuse_(group, shape,
+              "groups stand within groups more than " + std::to_string(kMostGroupLevels) + " levels deep");
     check_group(index);
   }
 

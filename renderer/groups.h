@@ -1,5 +1,5 @@
-// What refers to what among shapes and groups: names that must exist, chains that must end. Checked when a scene file is
-// read and again when a scene is prepared, since scenes are also made by programs.
+// What refers to what among shapes and groups: names that must exist, chains that must end. Checked when a scene file
+// is read and again when a scene is prepared, since scenes are also made by programs.
 #pragma once
 
 #include <cstdint>

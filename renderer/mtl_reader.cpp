@@ -13,7 +13,10 @@
 namespace raytree {
 namespace {
 
-using namespace text;
+using text::is_blank;
+using text::is_space;
+using text::scan_double;
+using text::skip_blanks;
 
 /// A material as the library states it; what it does not state is empty.
 struct MtlMaterial {

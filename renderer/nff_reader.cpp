@@ -14,7 +14,9 @@
 namespace raytree {
 namespace {
 
-using namespace text;
+using text::is_space;
+using text::scan_double;
+using text::skip_blanks;
 
 /// Words of the text with the line they stand on; a # and what follows on its line are left out.
 class WordReader {

@@ -68,8 +68,7 @@ Ground ground_at(const TriangleMesh& terrain, const TerrainGrid& grid, double u,
     const bool upper = fx + fz <= 1;  // a b c, else b c d
     along_x = upper ? position(b) - position(a) : position(d) - position(c);
     along_z = upper ? position(c) - position(a) : position(d) - position(b);
-    p = upper ? position(a) + along_x * fx + along_z * fz
-              : position(d) - along_x * (1 - fx) - along_z * (1 - fz);
+    p = upper ? position(a) + along_x * fx + along_z * fz : position(d) - along_x * (1 - fx) - along_z * (1 - fz);
   }
   Vec3d normal = along_z.cross(along_x);
   if (normal.y < 0) normal = -normal;
@@ -100,7 +99,7 @@ std::vector<Matrix44d> scattered(const ScatterShape& scatter, const TriangleMesh
           patchiness(seed, ground.point.x / scatter.clearing_size, ground.point.z / scatter.clearing_size);
       // The middle two thirds of the noise's range hold nearly all of it; borders are loose over a tenth.
       const double share = (patch - 1.0 / 6) * 1.5 + (random(key, 3) - 0.5) * 0.1;
-      if (share < scatter.clearings) continue;
+      if (share < scatter.clearings || scatter.clearings >= 1) continue;
     }
     const double scale = scatter.least_scale + (scatter.largest_scale - scatter.least_scale) * random(key, 4);
     const double turn = 2 * std::numbers::pi * random(key, 5);

@@ -285,7 +285,8 @@ SmallObjects::SmallObjects(const ShapeSet& shapes, const Camera& camera, int wid
     if (small) keep(outline.finish(entry.shape));
   }
   std::vector<GroupOutline> groups;
-  if (!shapes.instances.empty()) groups.assign(shapes.groups.begin(), shapes.groups.end());
+  groups.reserve(shapes.groups.size());
+  for (const BoundedShapes& group : shapes.groups) groups.emplace_back(group);
   for (const Instance& instance : shapes.instances)
     keep(instance_outline(shapes.groups[instance.group], groups[instance.group], instance, camera));
   sort_into_tiles(width, height);

@@ -280,6 +280,28 @@ TEST(CommandLineInfo, SaysWhatIsInAScene) {
   EXPECT_GT(info["memory_bytes"]["arrays"], 0);
 }
 
+TEST(CommandLineInfo, CountsInstancesOnceAndAsOftenAsTheyAreUsed) {
+  TemporaryFolder folder;
+  write_text(folder.path("s.json"),
+             R"({"raytree": 1,
+                 "groups": {"hill": {"shapes": {"hill": {"type": "terrain", "triangles": 800}, "ball": {"type": "sphere"}}},
+                            "pair": {"shapes": {"a": {"type": "instance", "group": "hill"},
+                                                "b": {"type": "instance", "group": "hill"}}}},
+                 "shapes": {"x": {"type": "instance", "group": "pair"}, "y": {"type": "instance", "group": "hill"}}})");
+  const ProgramResult text = run_program({"info", folder.path("s.json")});
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_TRUE(contains(text.out, "instances  3, which stand for 2,400 triangles and 3 spheres")) << text.out;
+  const ProgramResult result = run_program({"info", folder.path("s.json"), "--json"});
+  const Json info = Json::parse(result.out);
+  EXPECT_EQ(info["totals"]["traced_triangles"], 800);
+  EXPECT_EQ(info["totals"]["spheres"], 1);
+  EXPECT_EQ(info["totals"]["instances"], 3);
+  EXPECT_EQ(info["totals"]["instanced_triangles"], 2400);
+  EXPECT_EQ(info["objects"][0]["instances"], 2);
+  EXPECT_EQ(info["objects"][0]["first_extra_id"], 3);
+  EXPECT_EQ(info["groups"].size(), 2u);
+}
+
 TEST(CommandLineBench, CountsTheSameAnswersForAnyNumberOfThreads) {
   const auto run = [](const char* threads) {
     const ProgramResult result = run_program(

@@ -33,7 +33,8 @@ TEST(Tree, HasTheTrianglesOfItsClosedForm) {
   EXPECT_EQ(tree_wood_triangles(TreeForm::conifer), 4056);
   for (const TreeForm form : {TreeForm::broadleaf, TreeForm::conifer})
     for (const std::int64_t leaves : {1, 2, 999, 5000}) {
-      const TriangleMesh wood = make_tree_wood(parameters(form, leaves)), crown = make_tree_leaves(parameters(form, leaves));
+      const TriangleMesh wood = make_tree_wood(parameters(form, leaves)),
+                         crown = make_tree_leaves(parameters(form, leaves));
       EXPECT_EQ(static_cast<std::int64_t>(wood.triangle_count()), tree_wood_triangles(form));
       EXPECT_EQ(static_cast<std::int64_t>(crown.triangle_count()), tree_leaf_triangles(leaves));
       EXPECT_EQ(crown.positions.size(), 4u * static_cast<std::size_t>(leaves));
@@ -45,7 +46,8 @@ TEST(Tree, HasTheTrianglesOfItsClosedForm) {
 TEST(Tree, StandsOnItsFootAndIsAsTallAsAsked) {
   for (const TreeForm form : {TreeForm::broadleaf, TreeForm::conifer})
     for (std::uint32_t seed = 0; seed < 20; ++seed) {
-      const TriangleMesh wood = make_tree_wood(parameters(form, 5000, seed)), crown = make_tree_leaves(parameters(form, 5000, seed));
+      const TriangleMesh wood = make_tree_wood(parameters(form, 5000, seed)),
+                         crown = make_tree_leaves(parameters(form, 5000, seed));
       float lowest = 1e9f, highest = -1e9f, reach = 0;
       for (const TriangleMesh* mesh : {&wood, &crown})
         for (const Vec3f& p : mesh->positions) {
@@ -74,7 +76,8 @@ TEST(Tree, FacesAgreeWithTheirNormals) {
 }
 
 TEST(Tree, IsTheSameOnEveryCallAndAnotherForAnotherSeed) {
-  const TriangleMesh a = make_tree_leaves(parameters(TreeForm::conifer)), b = make_tree_leaves(parameters(TreeForm::conifer)),
+  const TriangleMesh a = make_tree_leaves(parameters(TreeForm::conifer)),
+                     b = make_tree_leaves(parameters(TreeForm::conifer)),
                      c = make_tree_leaves(parameters(TreeForm::conifer, 5000, 8));
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_NE(a.positions, c.positions);

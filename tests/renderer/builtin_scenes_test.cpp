@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "renderer/scene.h"
 #include "renderer/scene_reader.h"
 
 namespace raytree {
@@ -24,7 +25,7 @@ TEST(BuiltinScenes, AllReadAndRoundTrip) {
     const std::string text = write_scene(description);
     EXPECT_EQ(write_scene(read_scene(text, scene.name, "")), text) << scene.name;
   }
-  for (const char* name : {"spheres-1980", "sphere-flake", "terrain", "stepwedge", "mirrors", "lens", "glass"})
+  for (const char* name : {"spheres-1980", "sphere-flake", "terrain", "forest", "stepwedge", "mirrors", "lens", "glass"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
 }
 
@@ -75,6 +76,24 @@ TEST(BuiltinScenes, WhittedsPictureHasAGlassAndAMirrorSphereOverAFiniteChecker) 
   EXPECT_EQ(scene.image.width, 960);
   EXPECT_EQ(scene.image.height, 720);
   EXPECT_EQ(scene.render.antialias.grid_size, 3);
+}
+
+TEST(BuiltinScenes, TheForestIsThousandsOfInstancesOfAFewTreesOnTheGround) {
+  Warnings warnings;
+  PrepareOptions options;
+  options.build = false;
+  const Scene scene = prepare(builtin_scene("forest"), options, warnings);
+  EXPECT_GT(scene.summary.instances, 10'000u);
+  EXPECT_EQ(scene.summary.groups.size(), 6u);
+  std::uint64_t unique = 0, seen = 0;
+  for (const GroupSummary& group : scene.summary.groups)
+    for (const ShapeSummary& shape : group.shapes) unique += shape.triangles;
+  for (const ShapeSummary& shape : scene.summary.shapes) seen += shape.instanced_triangles;
+  EXPECT_LT(unique, 250'000u);
+  EXPECT_GT(seen, 300'000'000u);
+  // Nothing stands in the lake.
+  const float lake = 22;
+  for (const Instance& tree : scene.shapes->instances) EXPECT_GT(tree.to_scene[3][1] + scene.shapes->origin.y, lake);
 }
 
 // Phong 1973, App. I: the first table's shade n halves from square to square, the second's falls in equal steps. Lit by

@@ -85,9 +85,9 @@ Pair pair_of(const std::vector<Matrix44d>& transforms, bool round) {
 
 /// Rays all about hit the same points with the same normals and materials. What differs are the roundings of the way
 /// into the group: positions by kInstanceError of the coordinates (up to 16 here) times the magnification, which is
-/// below 30 for the transforms below; normals by that over the size of the smallest triangle's edges, and by where a ray
-/// that grazes an edge goes.
-void expect_the_same_hits(Pair pair, const std::string& what) {
+/// below 30 for the transforms below; normals by that over the size of the smallest triangle's edges, and by where a
+/// ray that grazes an edge goes.
+void expect_the_same_hits(Pair pair, const std::string& what, bool stretched = false) {
   const Scene placed = prepared(std::move(pair.placed)), instanced = prepared(std::move(pair.instanced));
   ASSERT_GT(instanced.shapes->instances.size(), 0u);
   ASSERT_EQ(placed.shapes->origin, instanced.shapes->origin);
@@ -127,10 +127,12 @@ void expect_the_same_hits(Pair pair, const std::string& what) {
       }
       off += (p.position - q.position).length() > tolerance;
       off += (p.geometric_normal - q.geometric_normal).length() > 2e-3f;
-      off += (p.shading_normal - q.shading_normal).length() > 2e-3f;
+      // Vertex normals are interpolated before the transform here and after it there: a stretch turns and shortens them
+      // apart, by up to a share of the 15 degrees between them.
+      off += (p.shading_normal - q.shading_normal).length() > (stretched ? 0.15f : 2e-3f);
     }
   }
-  EXPECT_GT(hits, 6000) << what;
+  EXPECT_GT(hits, 5000) << what;
   // Silhouettes and edges: a ray in a thousand passes within the error of one.
   EXPECT_LE(different, hits / 500) << what;
   EXPECT_LE(off, hits / 500) << what;
@@ -138,11 +140,11 @@ void expect_the_same_hits(Pair pair, const std::string& what) {
 
 TEST(Instances, ShowWhatTheSameShapesShow) {
   expect_the_same_hits(pair_of({Matrix44d()}, true), "identity");
-  expect_the_same_hits(pair_of({turn({0.3, 1, -2}) * translation({0.5, 0.2, -1}),
-                                scaling(Vec3d(0.5)) * translation({-3, 1, 0}),
-                                scaling(Vec3d(1.5)) * turn({2, 0, 1}) * translation({3, -1, -2})},
-                               true),
-                       "turned and scaled");
+  expect_the_same_hits(
+      pair_of({turn({0.3, 1, -2}) * translation({0.5, 0.2, -1}), scaling(Vec3d(0.5)) * translation({-3, 1, 0}),
+               scaling(Vec3d(1.5)) * turn({2, 0, 1}) * translation({3, -1, -2})},
+              true),
+      "turned and scaled");
   expect_the_same_hits(pair_of({scaling({-1, 1, 1}), scaling({0.7, 0.7, -0.7}) * translation({3, 0, 0})}, true),
                        "mirrored");
   Matrix44d shear;
@@ -150,13 +152,13 @@ TEST(Instances, ShowWhatTheSameShapesShow) {
   expect_the_same_hits(pair_of({scaling({1.5, 0.4, 0.9}) * turn({0.5, 0.2, 0}), shear * translation({-3, 0, 0}),
                                 scaling({-0.8, 1.7, 0.5}) * turn({1, 0, 2}) * translation({3, 0, 1})},
                                false),
-                       "stretched, sheared, mirrored meshes");
+                       "stretched, sheared, mirrored meshes", true);
 }
 
 TEST(Instances, MakeTheSamePicture) {
   // Shading, shadows and reflections included: pixels differ only where a silhouette or an edge passes.
-  Pair pair = pair_of({turn({0.3, 1, -2}) * translation({0.5, 0.2, -1}), scaling({-0.6, 0.6, 0.6}) * translation({-3, 1, 0})},
-                      true);
+  Pair pair = pair_of(
+      {turn({0.3, 1, -2}) * translation({0.5, 0.2, -1}), scaling({-0.6, 0.6, 0.6}) * translation({-3, 1, 0})}, true);
   const RenderResult placed = rendered(std::move(pair.placed)), instanced = rendered(std::move(pair.instanced));
   int far = 0;
   double sum = 0;
@@ -224,7 +226,8 @@ TEST(Instances, OfMirroringTransformsKeepTheOutsideOutside) {
         for (int c = 0; c < 3; ++c) m[r][c] = uniform(random);
     } while (std::abs(m.determinant()) < 0.05);
     SceneDescription scene = base_scene();
-    scene.groups.push_back(group("globe", {mesh_shape(std::make_shared<PolygonMesh>(*globe), "a", NormalSource::smooth)}));
+    scene.groups.push_back(
+        group("globe", {mesh_shape(std::make_shared<PolygonMesh>(*globe), "a", NormalSource::smooth)}));
     scene.shapes.push_back(instance("globe", m));
     const Scene made = prepared(std::move(scene));
     const EmbreeIntersector embree(*made.shapes, EmbreeOptions{});
@@ -245,7 +248,8 @@ TEST(Instances, OfMirroringTransformsKeepTheOutsideOutside) {
 TEST(Instances, FarFromTheOriginLookAsAtIt) {
   const Vec3d far(1e6, -2e6, 3e6);
   const auto scene_at = [&](const Vec3d& place) {
-    SceneDescription scene = pair_of({turn({0.3, 1, -2}), scaling(Vec3d(0.5)) * translation({-3, 1, 0})}, true).instanced;
+    SceneDescription scene =
+        pair_of({turn({0.3, 1, -2}), scaling(Vec3d(0.5)) * translation({-3, 1, 0})}, true).instanced;
     for (ShapeDescription& s : scene.shapes) s.transform = s.transform * translation(place);
     scene.cameras[0].position += place;
     scene.cameras[0].target += place;
@@ -284,7 +288,8 @@ TEST(Instances, OfAGroupFarFromItsOwnOriginLoseNothing) {
 TEST(Instances, KeepTheirShapesMaterialsUnlessTheyBringOne) {
   SceneDescription scene = base_scene();
   scene.materials.push_back(material("c", Rgb(0.9f)));
-  scene.groups.push_back(group("pair", {shape(SphereShape{{-1, 0, 0}, 0.5}, "a"), shape(SphereShape{{1, 0, 0}, 0.5}, "b")}));
+  scene.groups.push_back(
+      group("pair", {shape(SphereShape{{-1, 0, 0}, 0.5}, "a"), shape(SphereShape{{1, 0, 0}, 0.5}, "b")}));
   scene.shapes = {instance("pair", translation({0, 1.5, 0})), instance("pair", translation({0, -0.5, 0}), "c"),
                   shape(SphereShape{{0, 0.5, -1}, 0.4}, "")};
   const Scene made = prepared(std::move(scene));
@@ -314,22 +319,26 @@ TEST(Instances, OfWhatCannotBeAreRefused) {
   SceneDescription scene = base_scene();
   scene.groups = {group("a", {instance("b", {}, "", "use b")}), group("b", {instance("c", {}, "", "use c")}),
                   group("c", {instance("a", {}, "", "use a")})};
-  EXPECT_EQ(refusal(scene), "test.json:1: shapes.use a: a group may not hold itself: \"a\" holds \"b\" holds \"c\" holds \"a\"");
+  EXPECT_EQ(refusal(scene),
+            "test.json:1: shapes.use a: a group may not hold itself: \"a\" holds \"b\" holds \"c\" holds \"a\"");
   scene.groups = {group("a", {instance("a", {})})};
   EXPECT_NE(refusal(scene).find("a group may not hold itself: \"a\" holds \"a\""), std::string::npos) << refusal(scene);
 
   scene.groups = {group("tree", {shape(SphereShape{}, "a")}), group("bush", {})};
   scene.shapes = {instance("tre", {})};
-  EXPECT_EQ(refusal(scene),
-            "test.json:1: shapes.use: unknown group \"tre\"; groups of this scene: tree, bush (did you mean \"tree\"?)");
+  EXPECT_EQ(
+      refusal(scene),
+      "test.json:1: shapes.use: unknown group \"tre\"; groups of this scene: tree, bush (did you mean \"tree\"?)");
   scene.groups[0].shapes.push_back(shape(PlaneShape{}, "a"));
+  scene.shapes = {instance("tree", {})};
   EXPECT_NE(refusal(scene).find("a plane has no bounds"), std::string::npos) << refusal(scene);
 
   scene.groups = {group("ball", {shape(SphereShape{}, "a")})};
   scene.shapes = {instance("ball", scaling({1, 2, 1}))};
-  EXPECT_NE(refusal(scene).find("an instance of the group \"ball\", which holds spheres or discs, takes a transform with "
-                                "one scale for all axes"),
-            std::string::npos)
+  EXPECT_NE(
+      refusal(scene).find("an instance of the group \"ball\", which holds spheres or discs, takes a transform with "
+                          "one scale for all axes"),
+      std::string::npos)
       << refusal(scene);
   scene.groups = {group("box", {mesh_shape(box_mesh({0, 0, 0}, {1, 1, 1}), "a")})};
   for (const auto& [transform, why] :
@@ -348,7 +357,8 @@ TEST(Instances, OfWhatCannotBeAreRefused) {
   SceneDescription many = base_scene();
   for (int level = 0; level < 5; ++level) {
     std::vector<ShapeDescription> uses;
-    for (int i = 0; i < 100; ++i) uses.push_back(instance("g" + std::to_string(level + 1), translation({0, 1.0 * i, 0})));
+    for (int i = 0; i < 100; ++i)
+      uses.push_back(instance("g" + std::to_string(level + 1), translation({0, 1.0 * i, 0})));
     many.groups.push_back(group("g" + std::to_string(level), std::move(uses)));
   }
   many.groups.push_back(group("g5", {shape(SphereShape{}, "a")}));
@@ -365,7 +375,8 @@ TEST(Instances, OfWhatCannotBeAreRefused) {
   SceneDescription ground = base_scene();
   ground.groups = {group("ball", {shape(SphereShape{}, "a")})};
   ground.shapes = {shape(TerrainShape{}, "a", "hills"), shape(ScatterShape{.group = "ball", .terrain = "hill"}, "")};
-  EXPECT_NE(refusal(std::move(ground)).find("unknown terrain \"hill\"; terrains beside this shape: hills"), std::string::npos);
+  EXPECT_NE(refusal(std::move(ground)).find("unknown terrain \"hill\"; terrains beside this shape: hills"),
+            std::string::npos);
 }
 
 TEST(Instances, InSceneFilesAreRefusedWithFileLineAndPath) {
@@ -377,15 +388,17 @@ TEST(Instances, InSceneFilesAreRefusedWithFileLineAndPath) {
     }
     return "accepted";
   };
-  EXPECT_EQ(refused("{\"raytree\": 1, \"groups\": {\n\"a\": {\"shapes\": {\n\"x\": {\"type\": \"instance\", \"group\": \"b\"}}},\n"
+  EXPECT_EQ(refused("{\"raytree\": 1, \"groups\": {\n\"a\": {\"shapes\": {\n\"x\": {\"type\": \"instance\", \"group\": "
+                    "\"b\"}}},\n"
                     "\"b\": {\"shapes\": {\n\"y\": {\"type\": \"instance\", \"group\": \"a\"}}}}}"),
             "f.json:5: groups.b.shapes.y: a group may not hold itself: \"a\" holds \"b\" holds \"a\"");
   EXPECT_EQ(refused("{\"raytree\": 1, \"groups\": {\"oak\": {}, \"elm\": {}},\n\"shapes\": {\n\"x\": {\"type\": "
-                    "\"instance\", \"group\": \"oke\"}}}"),
-            "f.json:3: shapes.x: unknown group \"oke\"; groups of this scene: oak, elm (did you mean \"oak\"?)");
-  EXPECT_EQ(refused("{\"raytree\": 1, \"groups\": {\"oak\": {\"shapes\": {\n\"x\": {\"type\": \"sphere\", \"material\": "
-                    "\"m\"}}}}}"),
-            "f.json:2: groups.oak.shapes.x: unknown material \"m\"; materials of this scene: none");
+                    "\"instance\", \"group\": \"oac\"}}}"),
+            "f.json:3: shapes.x: unknown group \"oac\"; groups of this scene: oak, elm (did you mean \"oak\"?)");
+  EXPECT_EQ(
+      refused("{\"raytree\": 1, \"groups\": {\"oak\": {\"shapes\": {\n\"x\": {\"type\": \"sphere\", \"material\": "
+              "\"m\"}}}}}"),
+      "f.json:2: groups.oak.shapes.x: unknown material \"m\"; materials of this scene: none");
   EXPECT_NE(refused("{\"raytree\": 1, \"shapes\": {\n\"x\": {\"type\": \"instance\"}}}").find("missing key \"group\""),
             std::string::npos);
   SceneDescription scene = read_scene(
@@ -402,7 +415,9 @@ void expect_no_instance_lost(GroupDescription ball, double radius, const char* w
   // As small_objects_test has it for shapes: an orthographic window of a pixel a unit, objects far enough apart.
   const int size = 160, spacing = 8;
   std::mt19937_64 random(11);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
   SceneDescription scene = dark_scene(size, front_camera(size));
   scene.render.antialias.method = Antialiasing::Method::whitted;
   scene.ambient = Rgb(1);
@@ -414,9 +429,9 @@ void expect_no_instance_lost(GroupDescription ball, double radius, const char* w
     for (int x = spacing; x < size - spacing; x += spacing, ++count) {
       const double r = std::exp(uniform(std::log(0.05), std::log(1.0)));
       expected += std::numbers::pi * r * r;
-      scene.shapes.push_back(instance("ball", scaling(Vec3d(r / radius)) * turn({uniform(0, 6), uniform(0, 6), 0}) *
-                                                  translation({x - size / 2.0 + uniform(-1, 1),
-                                                               y - size / 2.0 + uniform(-1, 1), 0})));
+      scene.shapes.push_back(
+          instance("ball", scaling(Vec3d(r / radius)) * turn({uniform(0, 6), uniform(0, 6), 0}) *
+                               translation({x - size / 2.0 + uniform(-1, 1), y - size / 2.0 + uniform(-1, 1), 0})));
     }
   const RenderResult result = rendered(std::move(scene));
   std::vector<bool> seen(count + 1, false);

@@ -27,16 +27,20 @@ TEST(Scatter, StandsOnTheTerrainsTriangles) {
   ASSERT_EQ(uses.size(), 2000u);
   for (const Matrix44d& use : uses) {
     const Vec3d foot(use[3][0], use[3][1], use[3][2]);
-    const Hit hit = embree.intersect_one(Vec3f(foot + Vec3d(0, 5, 0)), {0, -1, 0}, std::numeric_limits<float>::infinity());
+    const Hit hit =
+        embree.intersect_one(Vec3f(foot + Vec3d(0, 5, 0)), {0, -1, 0}, std::numeric_limits<float>::infinity());
     ASSERT_NE(hit.geometry, kNoGeometry);
     // Slopes of up to 20 turn half an ulp of x into as much height.
     EXPECT_NEAR(hit.distance, 5, 5e-5) << foot.x << " " << foot.z;
     // Upright, turned about y alone, scaled alike.
     const double scale = use[1][1];
-    EXPECT_GE(scale, 0.8), EXPECT_LE(scale, 1.2);
+    EXPECT_GE(scale, 0.8);
+    EXPECT_LE(scale, 1.2);
     EXPECT_NEAR(std::hypot(use[0][0], use[0][2]), scale, 1e-12);
     EXPECT_NEAR(use.determinant(), scale * scale * scale, 1e-9);
-    EXPECT_EQ(use[1][0], 0), EXPECT_EQ(use[0][1], 0), EXPECT_EQ(use[2][1], 0);
+    EXPECT_EQ(use[1][0], 0);
+    EXPECT_EQ(use[0][1], 0);
+    EXPECT_EQ(use[2][1], 0);
   }
 }
 
@@ -60,14 +64,15 @@ TEST(Scatter, KeepsToHeightsSlopesAndClearings) {
   scatter.count = 500, scatter.lowest = 0.8, scatter.highest = 1.2, scatter.sink = 0.25;
   for (const Matrix44d& use : scattered(scatter, terrain, grid)) {
     const double ground = use[3][1] + 0.25 * use[1][1];
-    EXPECT_GE(ground, 0.8 - 1e-9), EXPECT_LE(ground, 1.2 + 1e-9);
+    EXPECT_GE(ground, 0.8 - 1e-9);
+    EXPECT_LE(ground, 1.2 + 1e-9);
   }
   ScatterShape nowhere;
   nowhere.lowest = 100;
   EXPECT_TRUE(scattered(nowhere, terrain, grid).empty());
   nowhere = {};
   nowhere.clearings = 1;
-  EXPECT_LT(scattered(nowhere, terrain, grid).size(), 10u);
+  EXPECT_TRUE(scattered(nowhere, terrain, grid).empty());
   ScatterShape flat;
   flat.count = 300, flat.steepest = 5;
   const auto level = scattered(flat, terrain, grid);

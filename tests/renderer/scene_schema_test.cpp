@@ -141,7 +141,15 @@ Json rich_document() {
       "e": {"type": "disc", "center": [0, 0, 0], "normal": [0, 1, 0], "radius": 1,
             "transform": {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}},
       "f": {"type": "terrain", "triangles": 100, "size": 1, "height": 1, "roughness": 0.5, "seed": 1},
-      "g": {"type": "sphere_flake", "levels": 1, "center": [0, 0, 0], "radius": 1}}})");
+      "g": {"type": "sphere_flake", "levels": 1, "center": [0, 0, 0], "radius": 1},
+      "h": {"type": "instance", "group": "tree", "material": "m"},
+      "i": {"type": "scatter", "group": "trees", "terrain": "f", "count": 10, "least_scale": 1, "largest_scale": 2, "lowest": 0,
+            "highest": 1, "steepest": 30, "sink": 0.1, "clearings": 0.2, "clearing_size": 1, "seed": 4}},
+    "groups": {
+      "trees": {"shapes": {"x": {"type": "instance", "group": "tree", "transform": {"scale": 2}}}},
+      "tree": {"shapes": {
+        "w": {"type": "tree", "species": "conifer", "part": "wood", "height": 3, "leaves": 10, "leaf_size": 0.1, "seed": 2, "material": "m"},
+        "l": {"type": "tree", "species": "broadleaf", "part": "leaves"}}}}})");
 }
 
 /// Where messages of the reader speak of what a schema cannot say.
@@ -149,7 +157,8 @@ bool beyond_a_schema(const std::string& message) {
   for (const char* text :
        {"unknown material", "too many", "same point", "line of sight", "not invertible", "index ", "not in the shape",
         " positions; give", "not affine", "overlap the group", "conductor transmits", "thin sheet has no inside",
-        "give either weight", "weight_by_angle: angle"})
+        "give either weight", "weight_by_angle: angle", "unknown group", "unknown terrain",
+        "may not hold itself", "a plane has no bounds", "is larger than largest_scale", "lies above highest"})
     if (message.find(text) != message.npos) return true;
   return false;
 }
@@ -356,6 +365,7 @@ TEST(SceneReference, StandsInTheDocumentation) {
   for_each_property(schema(), "", named);
   for_each_property(schema()["$defs"]["checker"], "", named);
   for_each_property(schema()["$defs"]["transform_step"], "", named);
+  for_each_property(schema()["$defs"]["shape"], "", named);
   EXPECT_GT(keys, 70);
 }
 

@@ -314,10 +314,10 @@ Count instance_false_hits(const Setting& setting, Primitive primitive, bool leve
     Matrix44d linear;
     linear.scale(Vec3d(setting.size / own_size));
     if (!round) {
-      linear.scale({random.uniform(0.2, 2), random.uniform(0.2, 2), random.uniform(0.2, 2)});
+      linear.scale(Vec3d(random.uniform(0.2, 2), random.uniform(0.2, 2), random.uniform(0.2, 2)));
       if (i % 3 == 0) linear.shear(random.in_cube(0.7));
     }
-    if (i % 2 == 0) linear.scale({-1, 1, 1});
+    if (i % 2 == 0) linear.scale(Vec3d(-1, 1, 1));
     Matrix44d turned;
     if (level)
       turned.rotate(Vec3d(0, random.uniform(0, 6), 0));
