@@ -146,10 +146,9 @@ Json rich_document() {
 
 /// Where messages of the reader speak of what a schema cannot say.
 bool beyond_a_schema(const std::string& message) {
-  for (const char* text :
-       {"unknown material", "too many", "same point", "line of sight", "not invertible", "index ", "not in the shape",
-        " positions; give", "not affine", "overlap the group", "conductor transmits", "thin sheet has no inside",
-        "give either weight", "weight_by_angle: angle"})
+  for (const char* text : {"unknown material", "too many", "same point", "line of sight", "not invertible", "index ",
+                           "not in the shape", " positions; give", "not affine", "overlap the group",
+                           "conductor transmits", "thin sheet has no inside", "weight_by_angle: angle"})
     if (message.find(text) != message.npos) return true;
   return false;
 }
