@@ -49,8 +49,6 @@ std::string material_problem(const MaterialDescription& description) {
   if (description.thin && !is_black(description.absorption))
     return "a thin sheet has no inside that could absorb: put its color into transmission";
   const std::vector<AngleWeight>& table = description.highlight.weight_by_angle;
-  if (!table.empty() && !is_black(description.highlight.weight))
-    return "give either weight or weight_by_angle of the highlight, not both";
   for (std::size_t i = 1; i < table.size(); ++i)
     if (!(table[i].angle > table[i - 1].angle))
       return fmt::format("weight_by_angle: angle {} does not lie above the one before it, {}", table[i].angle,

@@ -161,7 +161,7 @@ SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string
   MaterialDescription clay;  // fired and glazed: it mirrors as glass does, little from the front and all at the rim
   clay.name = "clay";
   clay.diffuse = Rgb(0.55f, 0.22f, 0.11f);
-  clay.highlight = {Rgb(0.25f), 50, {}};
+  clay.highlight = {Rgb(0.25f), 50};
   clay.reflection = Rgb(1);
   clay.index_of_refraction = 1.5;
   clay.fresnel = true;

@@ -113,8 +113,6 @@ struct SampleTracer::State {
   void add_lights();
   void follow_shadows(std::size_t count);
   void spawn();
-  MediaId media_before(std::size_t p) const { return tracks_media() ? boundaries[p].before : kNoMedia; }
-  MediaId media_after(std::size_t p) const { return tracks_media() ? boundaries[p].after : kNoMedia; }
   void cut(std::uint32_t sample, const Rgb& bound);
   void add_children(RayKind kind, std::vector<PendingRay>& children);
   void record_first_hit(const BatchPoint& point, std::uint32_t object, std::uint32_t material);
@@ -224,6 +222,7 @@ void SampleTracer::State::add_children(RayKind kind, std::vector<PendingRay>& ch
 
 void SampleTracer::State::collect_hits() {
   const ShapeSet& shapes = *scene.shapes;
+  const bool media_matter = tracks_media();
   hit_count = 0;
   for (std::size_t i = 0; i < rays.size; ++i) {
     if (hits.geometry[i] != kNoGeometry) {
@@ -234,17 +233,17 @@ void SampleTracer::State::collect_hits() {
     // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
     const Vec3f poison = (ray.origin + ray.direction) * 0.0f;
     results.radiance[ray.sample] +=
-        (tracks_media() ? escaping_weight(ray) : ray.weight) * scene.background.along(ray.direction) +
+        (media_matter ? escaping_weight(ray) : ray.weight) * scene.background.along(ray.direction) +
         Rgb(poison.x + poison.y + poison.z);
   }
   prefetch_triangles(shapes);
 
-  point_count = 0;
+  std::size_t count = 0;
   for (std::size_t h = 0; h < hit_count; ++h) {
     const std::size_t i = hit_rays[h];
     const PendingRay& ray = contexts[i];
     const Hit hit = hits[i];
-    BatchPoint& point = points[point_count];
+    BatchPoint& point = points[count];
     std::uint32_t object;
     if (kFeatures.instances && instanced && hit.instance != kNoInstance) {
       object = shapes.instances[hit.instance].object;
@@ -260,9 +259,9 @@ void SampleTracer::State::collect_hits() {
     point.allowance = ray.allowance;
     point.sample = ray.sample;
     point.level = ray.level;
-    if (kFeatures.absorption && material.absorbs && point.shading.leaving && !tracks_media())
+    if (kFeatures.absorption && material.absorbs && point.shading.leaving && !media_matter)
       point.weight *= transmitted_share(material.absorption, point.shading.surface.distance);
-    if (tracks_media() && passes(point, boundaries[point_count], ray, hit)) continue;
+    if (media_matter && passes(point, boundaries[count], ray, hit)) continue;
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && ray.level > 1)
       point.weight *=
           segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);
@@ -271,8 +270,9 @@ void SampleTracer::State::collect_hits() {
         (material.ambient_as_diffuse ? point.shading.diffuse : material.ambient.at(point.shading.surface));
     if (kFeatures.first_hit_channels && ray.level == 1 && records.first_hits)
       record_first_hit(point, object, material_index);
-    ++point_count;
+    ++count;
   }
+  point_count = count;
 }
 
 /// The sets of the chunk's eye rays. Parallel eye rays start in places of their own.
@@ -390,12 +390,13 @@ void SampleTracer::State::add_lights() {
 
 void SampleTracer::State::spawn() {
   std::uint64_t branches_at_limit = 0;
+  const bool media_matter = tracks_media();
   for (const BatchPoint& point : batch_points()) {
     const Material& material = *point.shading.material;
     if (!material.has_reflection && !material.has_transmission) continue;
     const std::size_t p = static_cast<std::size_t>(&point - points.data());
     const Branches children =
-        tracks_media() ? branches_between(point.shading, boundaries[p].relative_index) : branches(point.shading);
+        media_matter ? branches_between(point.shading, boundaries[p].relative_index) : branches(point.shading);
     const Rgb reflected_weight = point.weight * children.reflected_weight;
     const Rgb refracted_weight = point.weight * children.refracted_weight;
     const bool reflects = !is_black(reflected_weight), refracts = !is_black(refracted_weight);
@@ -414,15 +415,16 @@ void SampleTracer::State::spawn() {
         cut(point.sample, reflected_bound);
       else
         reflected_rays.push_back({offset_origin(surface, surface.geometric_normal), shares.reflected,
-                                  children.reflected, point.sample, media_before(p), reflected_weight,
-                                  point.level + 1});
+                                  children.reflected, point.sample, media_matter ? boundaries[p].before : kNoMedia,
+                                  reflected_weight, point.level + 1});
     }
     if (refracts) {
       if (shares.cuts_refracted)
         cut(point.sample, refracted_bound);
       else
         refracted_rays.push_back({offset_origin(surface, -surface.geometric_normal), shares.refracted,
-                                  children.refracted, point.sample, media_after(p), refracted_weight, point.level + 1});
+                                  children.refracted, point.sample, media_matter ? boundaries[p].after : kNoMedia,
+                                  refracted_weight, point.level + 1});
     }
   }
   statistics.branches_at_depth_limit += branches_at_limit;

@@ -130,7 +130,7 @@ struct HighlightDescription {
   Rgb weight{0, 0, 0};   ///< W of Phong's eq. 4.5, multiplied by the light's color
   double exponent = 20;  ///< n, >= 1
   /// W(i) in place of `weight`: linear between these points, whose angles rise; constant beyond them. Empty: `weight`.
-  std::vector<AngleWeight> weight_by_angle;
+  std::vector<AngleWeight> weight_by_angle{};
 };
 
 /// Coefficients of Whitted's eq. 2. Side is decided by the geometric normal; outside has index 1.

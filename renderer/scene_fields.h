@@ -419,7 +419,8 @@ void visit_fields(Visitor& visit, T& highlight) {
               .range = {1, kLargestNumber}},
         highlight.exponent);
   visit(Field{.key = "weight_by_angle",
-              .text = "W(i) of Phong 1973, eq. 4.5, in place of `weight`: points in the order of their angles, linear "
+              .text = "W(i) of Phong 1973, eq. 4.5, in place of `weight` where it holds any points: in the order of "
+                      "their angles, linear "
                       "between them, constant beyond"},
         highlight.weight_by_angle);
 }

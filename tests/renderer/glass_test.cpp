@@ -197,9 +197,6 @@ TEST(Material, ThatCannotBeIsRefusedByName) {
   bad = clear_glass(1.5);
   bad.highlight.weight_by_angle = {{0, Rgb(1)}, {20, Rgb(0.5f)}, {20, Rgb(1)}};
   EXPECT_NE(refusal(bad).find("angle 20 does not lie above the one before it, 20"), std::string::npos);
-  bad.highlight.weight_by_angle = {{0, Rgb(1)}};
-  bad.highlight.weight = Rgb(1);
-  EXPECT_NE(refusal(bad).find("either weight or weight_by_angle"), std::string::npos);
 }
 
 TEST(Material, ThatReturnsMoreLightThanArrivesIsWarnedOf) {

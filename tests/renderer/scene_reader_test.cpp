@@ -131,9 +131,10 @@ TEST(SceneReader, FilesAreReadFromDiskAndKnowTheirFolder) {
 // --- refusals -----------------------------------------------------------------------------------------------
 
 TEST(SceneReader, RefusalsSayWhatWhereAndWhatWouldBeRight) {
-  EXPECT_EQ(refusal("\"materials\": {\n \"glass\": {\n  \"difuse\": 1}}"),
-            "s.json:4: materials.glass: unknown key \"difuse\"; known keys: diffuse, ambient, highlight, reflection, "
-            "transmission, index_of_refraction, fresnel (did you mean \"diffuse\"?)");
+  EXPECT_EQ(
+      refusal("\"materials\": {\n \"glass\": {\n  \"difuse\": 1}}"),
+      "s.json:4: materials.glass: unknown key \"difuse\"; known keys: from, diffuse, ambient, highlight, reflection, "
+      "transmission, index_of_refraction, fresnel, conductor, absorption, thin, priority (did you mean \"diffuse\"?)");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\n\"type\": \"direct\"}}"),
             "s.json:3: lights.sun.type: unknown type \"direct\"; known types: directional, point, spot (did you mean "
             "\"directional\"?)");
@@ -574,7 +575,8 @@ class Randomizer {
   void fill(const Field&, std::vector<AngleWeight>& table) {
     table.clear();
     for (int i = whole(0, 3); i > 0; --i)
-      table.push_back({90.0 / i - 90.0 / (i + 1) * number({0, 0.9}), {float_number({0}), float_number({0}), 1}});
+      table.push_back(
+          {90.0 / i - (90.0 / i - 90.0 / (i + 1)) * number({0, 0.9}), {float_number({0}), float_number({0}), 1}});
   }
   void fill(const Field&, Matrix44d& x) {
     x = Matrix44d();
@@ -597,7 +599,6 @@ class Randomizer {
   static void make_sound(MaterialDescription& material) {
     if (material.conductor) material.transmission = Rgb();
     if (material.thin) material.absorption = Rgb();
-    if (!material.highlight.weight_by_angle.empty()) material.highlight.weight = Rgb();
     ASSERT_EQ(material_problem(material), "");
   }
   template <Table T>
