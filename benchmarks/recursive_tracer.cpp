@@ -48,10 +48,12 @@ class Tracer {
     }
     const SurfacePoint surface = surface_at(*scene_.shapes, origin, direction, hit, wants_texture_);
     const ShapeId shape = scene_.shapes->shape_of(hit.geometry, hit.primitive);
-    const ShadingPoint point = shading_point(surface, direction, scene_.materials[scene_.shape_materials[shape]]);
+    const SampleWindow window = level == 1 ? SampleWindow{&scene_.camera, 1} : SampleWindow();
+    const ShadingPoint point =
+        shading_point(surface, direction, scene_.materials[scene_.shape_materials[shape]], window);
     if (settings_.distance_attenuation > 0 && level > 1)
       weight *= segment_attenuation(static_cast<float>(settings_.distance_attenuation), surface.distance);
-    sum_ += weight * scene_.ambient * point.material->ambient.at(point.surface);
+    sum_ += weight * scene_.ambient * ambient_of(point, window);
     if (point.material->has_diffuse || point.material->has_highlight)
       for (const Light& light : scene_.lights) add_light(point, light, weight);
     if (point.material->has_reflection || point.material->has_transmission) branch(point, weight, allowance, level);

@@ -84,7 +84,7 @@ struct SampleTracer::State {
     results.first_hits.resize(records.first_hits ? kBatchSize : 0);
   }
 
-  bool trace(std::span<const Vec2f> positions);
+  bool trace(std::span<const Vec2f> positions, float spacing);
   void begin_sample(std::size_t i, const Vec2f& position);
   bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
   void trace_batch(Coherence coherence, bool eye);
@@ -122,6 +122,7 @@ struct SampleTracer::State {
   std::vector<PendingRay> reflected_rays, refracted_rays;
 
   bool wants_texture = false;
+  SampleWindow eye_window;  ///< of the chunk's eye rays
 };
 
 void SampleTracer::State::begin_sample(std::size_t i, const Vec2f& position) {
@@ -133,7 +134,8 @@ void SampleTracer::State::begin_sample(std::size_t i, const Vec2f& position) {
 }
 
 /// Traces the eye rays of up to kBatchSize samples and all that grows from them. False: stopped.
-bool SampleTracer::State::trace(std::span<const Vec2f> positions) {
+bool SampleTracer::State::trace(std::span<const Vec2f> positions, float spacing) {
+  eye_window = {&scene.camera, spacing};
   for (std::size_t i = 0; i < positions.size(); ++i) begin_sample(i, positions[i]);
   std::fill(results.truncation.begin(), results.truncation.end(), Rgb());
   std::fill(results.ray_counts.begin(), results.ray_counts.end(), 1u);
@@ -186,6 +188,7 @@ void SampleTracer::State::add_children(RayKind kind, std::vector<PendingRay>& ch
 
 void SampleTracer::State::collect_hits(bool eye) {
   const ShapeSet& shapes = *scene.shapes;
+  const SampleWindow window = eye ? eye_window : SampleWindow();
   point_count = 0;
   for (std::size_t i = 0; i < rays.size; ++i) {
     if (hits.geometry[i] != kNoGeometry) {
@@ -208,7 +211,7 @@ void SampleTracer::State::collect_hits(bool eye) {
     const Material& material = scene.materials[scene.shape_materials[shape]];
     BatchPoint& point = points[p];
     find_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
-    complete_shading_point(point.shading, ray.direction, material);
+    complete_shading_point(point.shading, ray.direction, material, window);
     point.weight = ray.weight;
     point.allowance = ray.allowance;
     point.sample = ray.sample;
@@ -216,9 +219,7 @@ void SampleTracer::State::collect_hits(bool eye) {
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && !eye)
       point.weight *=
           segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);
-    results.radiance[ray.sample] +=
-        point.weight * scene.ambient *
-        (material.ambient_as_diffuse ? point.shading.diffuse : material.ambient.at(point.shading.surface));
+    results.radiance[ray.sample] += point.weight * scene.ambient * ambient_of(point.shading, window);
     if (kFeatures.first_hit_channels && eye && records.first_hits) record_first_hit(point, shape);
   }
 }
@@ -333,7 +334,7 @@ SampleTracer::SampleTracer(const Scene& scene, const SampleRecords& records, con
 SampleTracer::~SampleTracer() = default;
 SampleTracer::SampleTracer(SampleTracer&&) noexcept = default;
 
-bool SampleTracer::trace(std::span<const Vec2f> positions) { return state_->trace(positions); }
+bool SampleTracer::trace(std::span<const Vec2f> positions, float spacing) { return state_->trace(positions, spacing); }
 RenderStatistics& SampleTracer::statistics() { return state_->statistics; }
 const RenderStatistics& SampleTracer::statistics() const { return state_->statistics; }
 

@@ -453,8 +453,7 @@ TEST(SetSceneValue, RefusalsNameThePathAndTheChoices) {
   EXPECT_NE(set_refusal("shapes.floor.faces", "[[0, 1, 9]]").find("index 9 is out of range"), std::string::npos);
   EXPECT_NE(set_refusal("shapes.file.faces", "[[0, 1, 2]]").find("comes from a file"), std::string::npos);
   EXPECT_NE(set_refusal("materials.glass.ambient.size", "1").find("set it as a whole first"), std::string::npos);
-  EXPECT_NE(set_refusal("materials.glass.diffuse.size", "1").find("set \"type\" to \"checker\" first"),
-            std::string::npos);
+  EXPECT_NE(set_refusal("materials.glass.diffuse.size", "1").find("set \"type\" first"), std::string::npos);
   for (const char* path : {"", ".", "..", "[", "[0]", "materials", "materials.", "materials..x", "\"", "shapes.\"",
                            "render.", "lights.sun.type.x", "image[0]"})
     EXPECT_NE(set_refusal(path, "1"), "accepted") << path;
@@ -559,12 +558,16 @@ class Randomizer {
       fill(field, color);
       x = color;
     } else {
-      CheckerPattern checker;
-      visit_fields(*this, checker);
-      x = checker;
+      VaryingPattern pattern;
+      tagged({}, pattern);
+      x = color_pattern(pattern);
     }
   }
   void fill(const Field& field, std::optional<ColorPattern>& x) {
+    x.reset();
+    if (whole(0, 1) == 0) fill(field, x.emplace());
+  }
+  void fill(const Field& field, std::optional<BumpDescription>& x) {
     x.reset();
     if (whole(0, 1) == 0) fill(field, x.emplace());
   }
@@ -656,9 +659,12 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(PointLight{}), 3);
   EXPECT_EQ(count(SpotLight{}), 6);
   EXPECT_EQ(count(LightDescription{}), 3 - 1) << "without name";
-  EXPECT_EQ(count(CheckerPattern{}), 5);
+  EXPECT_EQ(count(CheckerPattern{}), 6);
+  EXPECT_EQ(count(StripesPattern{}), 8);
+  EXPECT_EQ(count(NoisePattern{}), 10);
+  EXPECT_EQ(count(BumpDescription{}), 8);
   EXPECT_EQ(count(HighlightDescription{}), 2);
-  EXPECT_EQ(count(MaterialDescription{}), 8 - 1) << "without name";
+  EXPECT_EQ(count(MaterialDescription{}), 9 - 1) << "without name";
   EXPECT_EQ(count(FaceGroup{}), 4);
   EXPECT_EQ(count(MeshShape{}), 4);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";
