@@ -25,9 +25,12 @@ struct Checker {
 
   double share(const Vec3d& place, const Footprint& footprint) const {
     const PlaneVector center{a.at(place), b.at(place)};
-    if (footprint.is_point()) return 0.5 + 0.5 * square_wave(center.a) * square_wave(center.b);
-    return 0.5 + 0.5 * checker_mean(center, {a.over(footprint.edge), b.over(footprint.edge)},
-                                    {a.over(footprint.other_edge), b.over(footprint.other_edge)});
+    const PlaneVector edge{a.over(footprint.edge), b.over(footprint.edge)},
+        other{a.over(footprint.other_edge), b.over(footprint.other_edge)};
+    const double reach = std::max(std::abs(edge.a) + std::abs(other.a), std::abs(edge.b) + std::abs(other.b));
+    if (reach == 0 || (footprint.leaves_edges && reach < 1))
+      return 0.5 + 0.5 * square_wave(center.a) * square_wave(center.b);
+    return 0.5 + 0.5 * checker_mean(center, edge, other);
   }
 };
 
@@ -37,7 +40,10 @@ struct Stripes {
 
   double share(const Vec3d& place, const Footprint& footprint) const {
     const double x = across.at(place), width = across.over(footprint.edge), other = across.over(footprint.other_edge);
-    if (!smooth) return 0.5 + 0.5 * square_wave_mean(x, width, other);
+    if (!smooth) {
+      const bool as_point = footprint.leaves_edges && std::abs(width) + std::abs(other) < 1;
+      return 0.5 + 0.5 * (as_point ? square_wave(x) : square_wave_mean(x, width, other));
+    }
     // A sine's mean over an interval is the sine at its middle, less high.
     const auto height = [](double w) {
       const double angle = std::numbers::pi * 0.5 * w;

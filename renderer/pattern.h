@@ -16,8 +16,9 @@ namespace raytree {
 /// that touches the surface. Both edges 0: a point.
 struct Footprint {
   Vec3f edge{0, 0, 0}, other_edge{0, 0, 0};  ///< scene units, tangent to the surface
-
-  bool is_point() const { return edge == Vec3f(0, 0, 0) && other_edge == Vec3f(0, 0, 0); }
+  /// Patterns with edges are taken at a point where the footprint is smaller than a cell of theirs: adaptive sampling
+  /// finds the edges by what samples beside them differ in, and a sample that blurs them hides them from it.
+  bool leaves_edges = false;
 };
 
 class VaryingColor;

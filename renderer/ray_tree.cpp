@@ -135,7 +135,7 @@ void SampleTracer::State::begin_sample(std::size_t i, const Vec2f& position) {
 
 /// Traces the eye rays of up to kBatchSize samples and all that grows from them. False: stopped.
 bool SampleTracer::State::trace(std::span<const Vec2f> positions, float spacing) {
-  eye_window = {&scene.camera, spacing};
+  eye_window = {&scene.camera, spacing, settings.antialias.method == Antialiasing::Method::whitted};
   for (std::size_t i = 0; i < positions.size(); ++i) begin_sample(i, positions[i]);
   std::fill(results.truncation.begin(), results.truncation.end(), Rgb());
   std::fill(results.ray_counts.begin(), results.ray_counts.end(), 1u);

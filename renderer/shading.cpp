@@ -18,7 +18,7 @@ Footprint footprint_of(const ShadingPoint& point, const SampleWindow& window) {
   const auto laid_down = [&](const Vec3f& edge) {
     return (edge + point.direction * (edge.dot(normal) / cosine)) * window.spacing;
   };
-  return {laid_down(right), laid_down(up)};
+  return {laid_down(right), laid_down(up), window.leaves_edges};
 }
 
 void vary(ShadingPoint& point, const SampleWindow& window) {

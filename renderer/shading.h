@@ -30,6 +30,7 @@ struct ShadingPoint {
 struct SampleWindow {
   const Camera* camera = nullptr;
   float spacing = 1;
+  bool leaves_edges = false;  ///< see Footprint
 };
 
 /// What the window covers of the plane that touches the surface, normals turned to the ray.
