@@ -79,10 +79,13 @@ TEST(BuiltinScenes, WhittedsPictureHasAGlassAndAMirrorSphereOverAFiniteChecker) 
   EXPECT_EQ(scene.render.antialias.method, Antialiasing::Method::whitted);
 }
 
-/// The scene small, one sample a pixel.
-RenderResult sketched(SceneDescription scene) {
+/// The scene as `change` makes it, small, one sample a pixel. Read anew each time, since rendering consumes meshes.
+template <class Change>
+RenderResult sketched(const char* name, const Change& change) {
+  SceneDescription scene = builtin_scene(name);
   scene.image = {160, 120};
   scene.render.antialias = {Antialiasing::Method::none, 1};
+  change(scene);
   return test::rendered(std::move(scene));
 }
 /// Pixels that show shape `id` in both pictures and differ.
@@ -103,28 +106,31 @@ TEST(BuiltinScenes, Figure6ShowsThreeGlossyWrinkledObjectsThatShadowAndReflectEa
   const SceneDescription scene = builtin_scene("whitted-fig6");
   ASSERT_EQ(scene.shapes.size(), 4u);
   EXPECT_EQ(scene.render.antialias.method, Antialiasing::Method::whitted);
-  SceneDescription lit = scene;
-  lit.render.shadows = false;
-  const RenderResult all = sketched(lit);
+  // Without shadows: what changes on the others when one is taken away is its reflection.
+  const auto picture = [](const auto& change) {
+    return sketched("whitted-fig6", [&](SceneDescription& changed) {
+      changed.render.shadows = false;
+      change(changed);
+    });
+  };
+  const RenderResult all = picture([](SceneDescription&) {});
   for (std::size_t i = 0; i < 3; ++i) {
     const MaterialDescription& material = scene.materials.at(i);
     ASSERT_EQ(scene.shapes[i].material, material.name);
     EXPECT_TRUE(material.bump.has_value());
     EXPECT_GT(max_channel(material.highlight.weight), 0.3f);
-    // Without it the others look different: they reflect it, for shadows are off. Indices stay what they were.
-    SceneDescription without = lit;
-    std::get<SphereShape>(without.shapes[i].kind).center = {0, -1000, 0};
-    const RenderResult result = sketched(without);
+    const RenderResult without = picture([&](SceneDescription& changed) {
+      std::get<SphereShape>(changed.shapes[i].kind).center = {0, -1000, 0};
+    });
     for (std::size_t other = 0; other < 3; ++other)
       if (other != i) {
-        EXPECT_GT(changed_pixels(all, result, static_cast<std::uint32_t>(other + 1)), 15) << i << " in " << other;
+        EXPECT_GT(changed_pixels(all, without, static_cast<std::uint32_t>(other + 1)), 15) << i << " in " << other;
       }
-    // Without its wrinkles it looks different itself.
-    SceneDescription smooth = lit;
-    smooth.materials[i].bump.reset();
-    EXPECT_GT(changed_pixels(all, sketched(smooth), static_cast<std::uint32_t>(i + 1)), 300);
+    const RenderResult smooth = picture([&](SceneDescription& changed) { changed.materials[i].bump.reset(); });
+    EXPECT_GT(changed_pixels(all, smooth, static_cast<std::uint32_t>(i + 1)), 300) << "wrinkles of " << i;
   }
-  EXPECT_GT(changed_pixels(all, sketched(scene), 4), 1000) << "shadows on the table";
+  const RenderResult shadowed = sketched("whitted-fig6", [](SceneDescription&) {});
+  EXPECT_GT(changed_pixels(all, shadowed, 4), 1000) << "shadows on the table";
 }
 
 TEST(BuiltinScenes, Figure7ShowsACheckerThroughAnObjectThatRefracts) {
@@ -133,10 +139,10 @@ TEST(BuiltinScenes, Figure7ShowsACheckerThroughAnObjectThatRefracts) {
   const MaterialDescription& glass = scene.materials.at(0);
   EXPECT_GT(max_channel(glass.transmission), 0.5f);
   EXPECT_FALSE(scene.render.fresnel) << "the paper's pictures hold k_s and k_t constant";
-  const RenderResult result = sketched(scene);
-  SceneDescription straight = scene;
-  straight.materials.at(0).index_of_refraction = 1;
-  EXPECT_GT(changed_pixels(result, sketched(straight), 1), 1500) << "what is behind is seen elsewhere";
+  const RenderResult result = sketched("whitted-fig7", [](SceneDescription&) {});
+  const RenderResult straight =
+      sketched("whitted-fig7", [](SceneDescription& changed) { changed.materials.at(0).index_of_refraction = 1; });
+  EXPECT_GT(changed_pixels(result, straight, 1), 1500) << "what is behind is seen elsewhere";
   // The upper half of the ball shows the floor, red and yellow, where straight behind it is sky.
   int upside_down = 0;
   for (int y = 0; y < 60; ++y)

@@ -132,7 +132,7 @@ TEST(SceneReader, FilesAreReadFromDiskAndKnowTheirFolder) {
 TEST(SceneReader, RefusalsSayWhatWhereAndWhatWouldBeRight) {
   EXPECT_EQ(refusal("\"materials\": {\n \"glass\": {\n  \"difuse\": 1}}"),
             "s.json:4: materials.glass: unknown key \"difuse\"; known keys: diffuse, ambient, highlight, reflection, "
-            "transmission, index_of_refraction, fresnel (did you mean \"diffuse\"?)");
+            "transmission, index_of_refraction, fresnel, bump (did you mean \"diffuse\"?)");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\n\"type\": \"direct\"}}"),
             "s.json:3: lights.sun.type: unknown type \"direct\"; known types: directional, point, spot (did you mean "
             "\"directional\"?)");
@@ -207,7 +207,18 @@ TEST(SceneReader, RangesHoldAtTheirEnds) {
       {R"("materials": {"m": {"highlight": {"exponent": 1}}})", true},
       {R"("materials": {"m": {"highlight": {"exponent": 0.99}}})", false},
       {R"("materials": {"m": {"diffuse": {"type": "checker", "size": 0}}})", false},
-      {R"("materials": {"m": {"diffuse": {"type": "stripes"}}})", false},
+      {R"("materials": {"m": {"diffuse": {"type": "spots"}}})", false},
+      {R"("materials": {"m": {"diffuse": {"type": "stripes", "direction": [0, 0, 0]}}})", false},
+      {R"("materials": {"m": {"diffuse": {"type": "stripes", "even": -1}}})", false},
+      {R"("materials": {"m": {"ambient": {"type": "noise", "octaves": 16}}})", true},
+      {R"("materials": {"m": {"ambient": {"type": "noise", "octaves": 17}}})", false},
+      {R"("materials": {"m": {"ambient": {"type": "noise", "gain": 1.1}}})", false},
+      {R"("materials": {"m": {"ambient": {"type": "noise", "contrast": -1}}})", false},
+      {R"("materials": {"m": {"bump": {"amplitude": -1}}})", true},
+      {R"("materials": {"m": {"bump": {"size": 0}}})", false},
+      {R"("materials": {"m": {"bump": {"kind": "waves"}}})", false},
+      {R"("materials": {"m": {"bump": {"direction": [0, 0, 0]}}})", false},
+      {R"("materials": {"m": {"bump": 0.1}})", false},
       {R"("shapes": {"s": {"type": "terrain", "triangles": 2}})", true},
       {R"("shapes": {"s": {"type": "terrain", "triangles": 1}})", false},
       {R"("shapes": {"s": {"type": "terrain", "triangles": 5e7}})", true},
