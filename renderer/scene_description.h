@@ -152,8 +152,8 @@ using ColorPattern = std::variant<Rgb, CheckerPattern, StripesPattern, NoisePatt
 struct BumpDescription {
   enum class Kind { noise, wrinkles, ripples, stripes };
   Kind kind = Kind::wrinkles;
-  /// Scene units. Waves are so high above their mean, noise deviates by about a quarter of it; less than 0 sinks what was
-  /// raised.
+  /// Scene units. Waves are so high above their mean, noise deviates by about a quarter of it; less than 0 sinks what
+  /// was raised.
   double amplitude = 0.1;
   double size = 1;  ///< scene units: edge of a cell of the first octave; length of a wave
   int octaves = 1;
