@@ -43,7 +43,7 @@ class Tracer {
       media_->clear();
       media = media_->set_of(solids_around(scene_, origin, direction));
     }
-    trace({origin, direction, Rgb(1), static_cast<float>(settings_.cutoff), 1, media});
+    trace({origin, direction, Rgb(1), static_cast<float>(settings_.cutoff), 1, media, true});
     return is_finite(sum_) ? sum_ : Rgb();
   }
 
@@ -56,6 +56,7 @@ class Tracer {
     float allowance;
     int level;
     MediaId media;
+    bool from_eye = false;  ///< and nothing has been passed
   };
 
   void trace(const Ray& ray) {
@@ -68,7 +69,8 @@ class Tracer {
     }
     const SurfacePoint surface = surface_at(*scene_.shapes, ray.origin, ray.direction, hit, wants_texture_);
     const Material& material = scene_.materials[scene_.material_at(hit)];
-    const ShadingPoint point = shading_point(surface, ray.direction, material);
+    const SampleWindow window = ray.from_eye ? SampleWindow{&scene_.camera, 1} : SampleWindow();
+    const ShadingPoint point = shading_point(surface, ray.direction, material, window);
     MediaBoundary boundary;
     if (media_) {
       boundary = media_->boundary(ray.media, solid_at(scene_, hit), point.leaving);
@@ -84,7 +86,7 @@ class Tracer {
     }
     if (settings_.distance_attenuation > 0 && ray.level > 1)
       weight *= segment_attenuation(static_cast<float>(settings_.distance_attenuation), surface.distance);
-    sum_ += weight * scene_.ambient * material.ambient.at(point.surface);
+    sum_ += weight * scene_.ambient * ambient_of(point, window);
     if (material.has_diffuse || material.has_highlight)
       for (const Light& light : scene_.lights) add_light(point, light, weight, boundary.before);
     if (material.has_reflection || material.has_transmission) branch(point, boundary, weight, ray.allowance, ray.level);

@@ -49,7 +49,7 @@ bool AdaptiveSampler::trace(int x0, int y0, SampleTracer& tracer, TileSums& sums
   begin_tile(x0, y0);
   list_small_objects();
   add_pixels();
-  if (!trace_new_samples(tracer)) return false;
+  if (!trace_new_samples(tracer, 1)) return false;
   for (int level = 0; level < levels_ && !squares_.empty(); ++level)
     if (!divide_level(tracer)) return false;
   leaves_.insert(leaves_.end(), squares_.begin(), squares_.end());
@@ -133,11 +133,11 @@ std::uint32_t AdaptiveSampler::add_sample(const Vec2f& position, int pixel) {
   return static_cast<std::uint32_t>(positions_.size() - 1);
 }
 
-/// Traces the samples that were added since the last call.
-bool AdaptiveSampler::trace_new_samples(SampleTracer& tracer) {
+/// Traces the samples that were added since the last call, `spacing` pixels apart.
+bool AdaptiveSampler::trace_new_samples(SampleTracer& tracer, double spacing) {
   while (radiance_.size() < positions_.size()) {
     const std::size_t count = std::min(kBatchSize, positions_.size() - radiance_.size());
-    if (!tracer.trace({positions_.data() + radiance_.size(), count})) return false;
+    if (!tracer.trace({positions_.data() + radiance_.size(), count}, static_cast<float>(spacing))) return false;
     const SampleResults& results = tracer.results();
     for (std::size_t i = 0; i < count; ++i) {
       const bool finite = is_finite(results.radiance[i]);
@@ -207,6 +207,9 @@ bool AdaptiveSampler::divide_level(SampleTracer& tracer) {
   // is the middle of a side or of a square of this level.
   slots_.assign(std::bit_ceil(10 * squares_.size() + 1), {kNoPlace, 0});
   divided_.clear();
+  // A pattern is seen through a window as wide as the samples are apart, so the corners of a pixel tell its mean where
+  // it is finer than the pixel, and what division adds sees the finer detail that division is for.
+  const double spacing = edge(squares_.front().level + 1);
   std::size_t left = 0;
   for (const Square& square : squares_)
     if (wants_division(square))
@@ -215,7 +218,7 @@ bool AdaptiveSampler::divide_level(SampleTracer& tracer) {
       squares_[left++] = square;
   while (radiance_.size() < positions_.size()) {
     squares_.resize(left);
-    if (!trace_new_samples(tracer)) return false;
+    if (!trace_new_samples(tracer, spacing)) return false;
     left = 0;
     for (const Square& square : squares_)
       if (differs_on_a_side(square))
@@ -310,7 +313,7 @@ bool AdaptiveSampler::find_tiny_objects(SampleTracer& tracer) {
       if (part.seen == 0) part.ray = add_sample(Vec2f(centroid), pixel);
       tiny_.push_back(part);
     }
-  if (!trace_new_samples(tracer)) return false;
+  if (!trace_new_samples(tracer, edge(levels_))) return false;
   for (TinyPart& part : tiny_)
     if (part.ray != kNoSample && hits_[part.ray].object != part.id) part.area = 0;  // something is before it
   return true;

@@ -63,7 +63,7 @@ class AdaptiveSampler {
   std::size_t slot_of(int x, int y) const;
   std::uint32_t sample_at(int x, int y, int pixel);
   std::uint32_t add_sample(const Vec2f& position, int pixel);
-  bool trace_new_samples(SampleTracer& tracer);
+  bool trace_new_samples(SampleTracer& tracer, double spacing);
   void sort_leaves();
   bool find_tiny_objects(SampleTracer& tracer);
   void resolve(TileSums& sums);

@@ -30,6 +30,14 @@ class Camera {
     }
   }
 
+  /// How far the rays one pixel to the right and one pixel up are from this one, of unit `direction`, at `distance`
+  /// along it: exact to the first order but for a part along the ray itself.
+  void pixel_edges(const Vec3f& direction, float distance, Vec3f& right, Vec3f& up) const {
+    const float scale = perspective_ ? distance * direction.dot(forward_) : 1;
+    right = right_ * scale;
+    up = up_ * scale;
+  }
+
   /// Where a point of scene space is seen: ray()'s inverse. False: at or behind the plane of a perspective eye.
   bool project(const Vec3d& point, Vec2d& image) const;
 

@@ -14,6 +14,7 @@ struct Features {
   bool distance_attenuation = kOptionalFeatures;
   bool fresnel = kOptionalFeatures;
   bool patterns = kOptionalFeatures;  ///< colors that vary over the surface
+  bool bumps = kOptionalFeatures;     ///< normals that follow a height
   bool gradient_background = kOptionalFeatures;
   bool first_hit_channels = kOptionalFeatures;
   bool ray_count_channel = kOptionalFeatures;

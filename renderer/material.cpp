@@ -4,42 +4,12 @@
 
 #include <algorithm>
 
+#include "renderer/bump.h"
+
 namespace raytree {
 namespace {
 
 constexpr double kRadians = 3.14159265358979323846 / 180;
-
-Pattern make_pattern(const ColorPattern& description, const Vec3d& scene_origin) {
-  Pattern pattern;
-  if (const auto* color = std::get_if<Rgb>(&description)) {
-    pattern.even = pattern.odd = *color;
-    return pattern;
-  }
-  const auto& checker = std::get<CheckerPattern>(description);
-  pattern.even = checker.even;
-  pattern.odd = checker.odd;
-  pattern.varies = true;
-  pattern.squares_per_unit = 1 / checker.size;
-  pattern.over_texture = checker.plane == CheckerPattern::Plane::uv;
-  switch (checker.plane) {
-    case CheckerPattern::Plane::xz:
-      pattern.axis[0] = 0, pattern.axis[1] = 2;
-      break;
-    case CheckerPattern::Plane::xy:
-      pattern.axis[0] = 0, pattern.axis[1] = 1;
-      break;
-    case CheckerPattern::Plane::yz:
-      pattern.axis[0] = 1, pattern.axis[1] = 2;
-      break;
-    case CheckerPattern::Plane::uv:
-      break;
-  }
-  for (int i = 0; i < 2; ++i) {
-    const double offset = i == 0 ? checker.offset.x : checker.offset.y;
-    pattern.corner[i] = pattern.over_texture ? offset : offset - scene_origin[pattern.axis[i]];
-  }
-  return pattern;
-}
 
 }  // namespace
 
@@ -90,8 +60,10 @@ Material make_material(const MaterialDescription& description, bool fresnel, con
   material.priority = description.priority;
   const Rgb& k_t = material.transmission;
   material.shadow_transmission = {std::min(k_t.r, 1.0f), std::min(k_t.g, 1.0f), std::min(k_t.b, 1.0f)};
-  material.needs_texture = (material.diffuse.varies && material.diffuse.over_texture) ||
-                           (material.ambient.varies && material.ambient.over_texture);
+  material.needs_texture =
+      needs_texture(description.diffuse) || (description.ambient && needs_texture(*description.ambient));
+  if (description.bump) material.bump = std::make_shared<const Bump>(*description.bump, scene_origin);
+  material.is_varied = material.diffuse.varies() || (kFeatures.bumps && material.bump != nullptr);
   return material;
 }
 

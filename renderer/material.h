@@ -1,40 +1,19 @@
-// Materials in tracing form: coefficients of Whitted's eq. 2 and the patterns that color them.
+// Materials in tracing form: coefficients of Whitted's eq. 2, the patterns that color them and the bumps on them.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "geometry/surface.h"
 #include "renderer/color.h"
-#include "renderer/features.h"
+#include "renderer/pattern.h"
 #include "renderer/scene_description.h"
 
 namespace raytree {
 
-/// A color that may vary over the surface.
-struct Pattern {
-  Rgb even, odd;  ///< equal when constant
-  bool varies = false;
-  bool over_texture = false;  ///< texture coordinates in place of position
-  int axis[2] = {0, 2};       ///< components of the position
-  double corner[2] = {0, 0};  ///< scene space: where a corner of an even square lies
-  double squares_per_unit = 1;
-
-  Rgb at(const SurfacePoint& point) const { return kFeatures.patterns && varies ? square_at(point) : even; }
-  Rgb largest() const { return max(even, odd); }
-
- private:
-  Rgb square_at(const SurfacePoint& point) const {
-    const double a = over_texture ? point.texture.x : point.position[axis[0]];
-    const double b = over_texture ? point.texture.y : point.position[axis[1]];
-    const double column = std::floor((a - corner[0]) * squares_per_unit);
-    const double row = std::floor((b - corner[1]) * squares_per_unit);
-    const double sum = column + row;
-    return sum - 2 * std::floor(sum * 0.5) == 0 ? even : odd;
-  }
-};
+class Bump;
 
 /// W of eq. 4.5 over the angle of incidence.
 struct HighlightTable {
@@ -72,6 +51,9 @@ struct Material {
   Rgb absorption;                 ///< a of exp(-a t) inside
   Rgb shadow_transmission;        ///< of one crossing by a shadow ray: k_t, at most 1
   HighlightTable highlight_table;
+
+  bool is_varied = false;  ///< diffuse varies or there is a bump: vary() has something to do
+  std::shared_ptr<const Bump> bump;
 };
 
 /// exp(-a t): what of light is left after `distance` (finite) in a medium (Beer and Lambert).

@@ -98,13 +98,13 @@ struct SampleTracer::State {
     results.first_hits.resize(records.first_hits ? kBatchSize : 0);
   }
 
-  bool trace(std::span<const Vec2f> positions);
+  bool trace(std::span<const Vec2f> positions, float spacing);
   void begin_sample(std::size_t i, const Vec2f& position);
   bool tracks_media() const { return kFeatures.media && scene.tracks_media; }
   bool follows_shadows() const { return kFeatures.transparent_shadows && scene.transparent_shadows; }
   bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
   void trace_batch(Coherence coherence, bool eye);
-  void collect_hits();
+  void collect_hits(bool eye);
   void prefetch_triangles(const ShapeSet& shapes) const;
   std::span<const BatchPoint> batch_points() const { return {points.data(), point_count}; }
   void find_eye_media(std::span<const Vec2f> positions);
@@ -143,7 +143,8 @@ struct SampleTracer::State {
   std::vector<PendingRay> reflected_rays, refracted_rays;
 
   bool wants_texture = false;
-  bool instanced = false;  ///< the scene has instances
+  SampleWindow eye_window;  ///< of the chunk's eye rays
+  bool instanced = false;   ///< the scene has instances
 
   /// Where something transmits and shadows show it.
   std::optional<ShadowPaths> shadow_paths;
@@ -167,7 +168,8 @@ void SampleTracer::State::begin_sample(std::size_t i, const Vec2f& position) {
 }
 
 /// Traces the eye rays of up to kBatchSize samples and all that grows from them. False: stopped.
-bool SampleTracer::State::trace(std::span<const Vec2f> positions) {
+bool SampleTracer::State::trace(std::span<const Vec2f> positions, float spacing) {
+  eye_window = {&scene.camera, spacing, settings.antialias.method == Antialiasing::Method::whitted};
   for (std::size_t i = 0; i < positions.size(); ++i) begin_sample(i, positions[i]);
   if (tracks_media()) find_eye_media(positions);
   std::fill(results.truncation.begin(), results.truncation.end(), Rgb());
@@ -199,7 +201,7 @@ void SampleTracer::State::trace_batch(Coherence coherence, bool eye) {
   scene.intersector->intersect(rays, coherence, hits);
   const auto hit = Clock::now();
   const double intersection_before = statistics.intersection_seconds;
-  collect_hits();
+  collect_hits(eye);
   if (!eye) pending.resize(pending.size() - rays.size);
   add_lights();
   spawn();
@@ -220,9 +222,10 @@ void SampleTracer::State::add_children(RayKind kind, std::vector<PendingRay>& ch
   children.clear();
 }
 
-void SampleTracer::State::collect_hits() {
+void SampleTracer::State::collect_hits(bool eye) {
   const ShapeSet& shapes = *scene.shapes;
   const bool media_matter = tracks_media();
+  const SampleWindow window = eye ? eye_window : SampleWindow();
   hit_count = 0;
   for (std::size_t i = 0; i < rays.size; ++i) {
     if (hits.geometry[i] != kNoGeometry) {
@@ -254,7 +257,7 @@ void SampleTracer::State::collect_hits() {
     }
     const std::uint32_t material_index = scene.material_at(hit);
     const Material& material = scene.materials[material_index];
-    complete_shading_point(point.shading, ray.direction, material);
+    complete_shading_point(point.shading, ray.direction, material, window);
     point.weight = ray.weight;
     point.allowance = ray.allowance;
     point.sample = ray.sample;
@@ -265,9 +268,7 @@ void SampleTracer::State::collect_hits() {
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && ray.level > 1)
       point.weight *=
           segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);
-    results.radiance[ray.sample] +=
-        point.weight * scene.ambient *
-        (material.ambient_as_diffuse ? point.shading.diffuse : material.ambient.at(point.shading.surface));
+    results.radiance[ray.sample] += point.weight * scene.ambient * ambient_of(point.shading, window);
     if (kFeatures.first_hit_channels && ray.level == 1 && records.first_hits)
       record_first_hit(point, object, material_index);
     ++count;
@@ -448,7 +449,7 @@ SampleTracer::SampleTracer(const Scene& scene, const SampleRecords& records, con
 SampleTracer::~SampleTracer() = default;
 SampleTracer::SampleTracer(SampleTracer&&) noexcept = default;
 
-bool SampleTracer::trace(std::span<const Vec2f> positions) { return state_->trace(positions); }
+bool SampleTracer::trace(std::span<const Vec2f> positions, float spacing) { return state_->trace(positions, spacing); }
 RenderStatistics& SampleTracer::statistics() { return state_->statistics; }
 const RenderStatistics& SampleTracer::statistics() const { return state_->statistics; }
 

@@ -52,8 +52,9 @@ class SampleTracer {
   SampleTracer(SampleTracer&&) noexcept;
 
   /// Traces up to kBatchSize samples at image positions as Camera::ray() takes them; neighbours in the list should be
-  /// neighbours in the image, eight to a packet. False: stopped on the way, and the results are void.
-  bool trace(std::span<const Vec2f> positions);
+  /// neighbours in the image, eight to a packet. Each stands for a square of `spacing` pixels about it, which patterns
+  /// are filtered by. False: stopped on the way, and the results are void.
+  bool trace(std::span<const Vec2f> positions, float spacing);
 
   const SampleResults& results() const { return *results_; }
 

@@ -90,7 +90,18 @@ std::vector<std::string> features_in_use(const Scene& scene) {
       features.insert(render.highlights == HighlightForm::reflected ? "highlights (reflected)"
                                                                     : "highlights (halfway)");
     if (material.fresnel && (material.has_reflection || material.has_transmission)) features.insert("fresnel");
-    if (material.diffuse.varies || material.ambient.varies) features.insert("checker patterns");
+    const MaterialDescription* description =
+        index < scene.description.materials.size() ? &scene.description.materials[index] : nullptr;
+    const auto note_pattern = [&](const ColorPattern& pattern) {
+      if (std::holds_alternative<CheckerPattern>(pattern)) features.insert("checker patterns");
+      if (std::holds_alternative<StripesPattern>(pattern)) features.insert("stripes");
+      if (std::holds_alternative<NoisePattern>(pattern)) features.insert("noise");
+    };
+    if (description != nullptr) {
+      note_pattern(description->diffuse);
+      if (description->ambient) note_pattern(*description->ambient);
+      if (description->bump) features.insert("bumps");
+    }
     if (material.needs_texture) features.insert("texture coordinates");
     if (material.tabled_highlight) features.insert("highlights by angle");
     if (material.conductor) features.insert("conductors");

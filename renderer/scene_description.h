@@ -117,8 +117,52 @@ struct CheckerPattern {
   double size = 1;  ///< edge of one square, scene units (texture units for uv)
   Plane plane = Plane::xz;
   Vec2d offset{0, 0};  ///< where a corner of an even square lies, in the same units
+  /// Whether an eye ray's sample sees the mean over what it covers of the surface in place of one point (not over uv).
+  bool filtered = true;
 };
-using ColorPattern = std::variant<Rgb, CheckerPattern>;
+
+/// What a pattern lies over: world positions, or the surface's texture coordinates (u, v, 0).
+enum class PatternSpace { world, uv };
+
+/// Layers across a direction, of two colors by turns.
+struct StripesPattern {
+  Rgb even{0.9f, 0.9f, 0.9f}, odd{0.1f, 0.1f, 0.1f};
+  double size = 1;           ///< width of one stripe
+  Vec3d direction{1, 0, 0};  ///< across the stripes; any length but zero
+  bool smooth = false;       ///< the colors pass into each other as a sine does
+  PatternSpace space = PatternSpace::world;
+  Vec3d offset{0, 0, 0};  ///< a point where an even stripe begins
+  bool filtered = true;
+};
+
+/// Octaves of solid gradient noise between two colors.
+struct NoisePattern {
+  Rgb low{0.1f, 0.1f, 0.1f}, high{0.9f, 0.9f, 0.9f};
+  double size = 1;      ///< edge of a cell of the first octave; blotches are about as large
+  int octaves = 4;      ///< each twice as fine as the one before
+  double gain = 0.5;    ///< and so many times as high
+  double contrast = 2;  ///< the share of `high` is 1/2 + contrast * noise / 2, kept between 0 and 1
+  std::uint32_t seed = 0;
+  PatternSpace space = PatternSpace::world;
+  Vec3d offset{0, 0, 0};  ///< a corner of a cell
+  bool filtered = true;
+};
+using ColorPattern = std::variant<Rgb, CheckerPattern, StripesPattern, NoisePattern>;
+
+/// A height over the surface, in world space, that its normals follow but its outline does not (Blinn 1978).
+struct BumpDescription {
+  enum class Kind { noise, wrinkles, ripples, stripes };
+  Kind kind = Kind::wrinkles;
+  /// Scene units. Waves are so high above their mean, noise deviates by about a quarter of it; less than 0 sinks what
+  /// was raised.
+  double amplitude = 0.1;
+  double size = 1;  ///< scene units: edge of a cell of the first octave; length of a wave
+  int octaves = 1;
+  double gain = 0.5;
+  std::uint32_t seed = 0;
+  Vec3d offset{0, 0, 0};     ///< where it begins; ripples: their center
+  Vec3d direction{1, 0, 0};  ///< stripes: across them; any length but zero
+};
 
 /// W(i) of Phong's eq. 4.5 at one angle of incidence.
 struct AngleWeight {
@@ -148,6 +192,7 @@ struct MaterialDescription {
   Rgb absorption{0, 0, 0};  ///< a of exp(-a t) inside, per scene unit
   bool thin = false;        ///< a sheet without an inside: transmits without bending
   int priority = 0;         ///< among overlapping media the highest is there; 0 everywhere: media are not tracked
+  std::optional<BumpDescription> bump;
 };
 
 // --- shapes -------------------------------------------------------------------------------------------------

@@ -25,6 +25,7 @@ inline constexpr double kLargestNumber = 1e18;
 inline constexpr std::int64_t kMaxPixels = std::int64_t(1) << 30;  ///< width * height
 inline constexpr int kMaxGridSize = 64;                            ///< of antialias "grid:N"
 inline constexpr int kMaxSamplingLevels = 6;                       ///< 2^6: as fine as the largest grid
+inline constexpr int kMaxPatternOctaves = 16;                      ///< of noise
 
 /// What a number, or each component of a vector or color, may be.
 struct Range {
@@ -91,6 +92,20 @@ struct EnumTable<CheckerPattern::Plane> {
                                                         {E::uv, "uv", "the surface's texture coordinates"}}};
 };
 template <>
+struct EnumTable<PatternSpace> {
+  using E = PatternSpace;
+  static constexpr std::array<EnumEntry<E>, 2> entries{
+      {{E::world, "world", "world positions"}, {E::uv, "uv", "the surface's texture coordinates (u, v, 0)"}}};
+};
+template <>
+struct EnumTable<BumpDescription::Kind> {
+  using E = BumpDescription::Kind;
+  static constexpr std::array<EnumEntry<E>, 4> entries{{{E::noise, "noise", "soft dents and swellings"},
+                                                        {E::wrinkles, "wrinkles", "ridges that run where noise is 0"},
+                                                        {E::ripples, "ripples", "sine waves in circles about `offset`"},
+                                                        {E::stripes, "stripes", "sine waves along `direction`"}}};
+};
+template <>
 struct EnumTable<NormalSource> {
   using E = NormalSource;
   static constexpr std::array<EnumEntry<E>, 3> entries{
@@ -141,6 +156,14 @@ struct Alternative<SpotLight> {
 template <>
 struct Alternative<CheckerPattern> {
   static constexpr std::string_view name = "checker", text = "squares of two colors";
+};
+template <>
+struct Alternative<StripesPattern> {
+  static constexpr std::string_view name = "stripes", text = "layers of two colors across a direction";
+};
+template <>
+struct Alternative<NoisePattern> {
+  static constexpr std::string_view name = "noise", text = "octaves of solid gradient noise between two colors";
 };
 template <>
 struct Alternative<MeshShape> {
@@ -387,6 +410,14 @@ void visit_fields(Visitor& visit, T& light) {
         light.color);
 }
 
+template <class Visitor, class Kind>
+void visit_filtered(Visitor& visit, Kind& pattern) {
+  visit(Field{.key = "filtered",
+              .text = "Whether what the eye sees directly is the mean over the sample's share of the picture, not one "
+                      "point (not over uv)"},
+        pattern.filtered);
+}
+
 template <class Visitor, Is<CheckerPattern> T>
 void visit_fields(Visitor& visit, T& checker) {
   visit(Field{.key = "even", .text = "Color of the square at `offset` and of every second one", .range = kNotNegative},
@@ -397,6 +428,77 @@ void visit_fields(Visitor& visit, T& checker) {
       checker.size);
   visit(Field{.key = "plane", .text = "The two coordinates that the squares lie over"}, checker.plane);
   visit(Field{.key = "offset", .text = "Where a corner of an even square lies", .unit = "as size"}, checker.offset);
+  visit_filtered(visit, checker);
+}
+
+template <class Visitor, Is<StripesPattern> T>
+void visit_fields(Visitor& visit, T& stripes) {
+  visit(Field{.key = "even",
+              .text = "Color of the stripe that begins at `offset` and of every second one",
+              .range = kNotNegative},
+        stripes.even);
+  visit(Field{.key = "odd", .text = "Color of the stripes between", .range = kNotNegative}, stripes.odd);
+  visit(
+      Field{
+          .key = "size", .text = "Width of a stripe", .unit = "scene units, for uv texture units", .range = kPositive},
+      stripes.size);
+  visit(Field{.key = "direction", .text = "Across the stripes; any length but zero", .nonzero = true},
+        stripes.direction);
+  visit(Field{.key = "smooth", .text = "Whether the colors pass into each other, as a sine does"}, stripes.smooth);
+  visit(Field{.key = "space", .text = "What the stripes lie over"}, stripes.space);
+  visit(Field{.key = "offset", .text = "A point where an even stripe begins", .unit = "as size"}, stripes.offset);
+  visit_filtered(visit, stripes);
+}
+
+/// What sums of octaves have in common.
+template <class Visitor, class Sum>
+void visit_octaves(Visitor& visit, Sum& sum) {
+  visit(Field{.key = "octaves",
+              .text = "Number of layers of noise, each twice as fine as the one before",
+              .range = {1, kMaxPatternOctaves}},
+        sum.octaves);
+  visit(Field{.key = "gain", .text = "Ratio of the heights of successive octaves", .range = {0, 1}}, sum.gain);
+  visit(Field{.key = "seed", .text = "Another number, another noise", .range = {0, 4294967295.0}}, sum.seed);
+}
+
+template <class Visitor, Is<NoisePattern> T>
+void visit_fields(Visitor& visit, T& noise) {
+  visit(Field{.key = "low", .text = "Color where the noise is low", .range = kNotNegative}, noise.low);
+  visit(Field{.key = "high", .text = "Color where the noise is high", .range = kNotNegative}, noise.high);
+  visit(Field{.key = "size",
+              .text = "Edge of a cell of the first octave: blotches are about as large",
+              .unit = "scene units, for uv texture units",
+              .range = kPositive},
+        noise.size);
+  visit_octaves(visit, noise);
+  visit(Field{.key = "contrast",
+              .text = "The share of `high` is 1/2 + contrast n / 2 for a noise n of mean 0 and deviation .27, kept "
+                      "between 0 and 1",
+              .range = kNotNegative},
+        noise.contrast);
+  visit(Field{.key = "space", .text = "What the noise lies over"}, noise.space);
+  visit(Field{.key = "offset", .text = "A corner of a cell", .unit = "as size"}, noise.offset);
+  visit_filtered(visit, noise);
+}
+
+template <class Visitor, Is<BumpDescription> T>
+void visit_fields(Visitor& visit, T& bump) {
+  visit(Field{.key = "kind", .text = "What the height looks like"}, bump.kind);
+  visit(Field{.key = "amplitude",
+              .text = "Height of the waves above their mean; noise and wrinkles deviate by about a quarter of it; less "
+                      "than 0 sinks what was raised",
+              .unit = "scene units"},
+        bump.amplitude);
+  visit(Field{.key = "size",
+              .text = "Length of a wave; edge of a cell of the first octave",
+              .unit = "scene units",
+              .range = kPositive},
+        bump.size);
+  visit_octaves(visit, bump);
+  visit(Field{.key = "offset", .text = "Where the height begins; the center of ripples", .unit = "scene units"},
+        bump.offset);
+  visit(Field{.key = "direction", .text = "Stripes: across them; any length but zero", .nonzero = true},
+        bump.direction);
 }
 
 template <class Visitor, Is<AngleWeight> T>
@@ -471,6 +573,10 @@ void visit_fields(Visitor& visit, T& material) {
                   "surface separates its own inside from empty space",
               .range = {-1000, 1000}},
         material.priority);
+  visit(Field{.key = "bump",
+              .text = "A height that normals follow, and so light, but not the outline (Blinn 1978)",
+              .absent = "smooth"},
+        material.bump);
 }
 
 template <class Visitor, Is<FaceGroup> T>
@@ -685,9 +791,9 @@ void visit_fields(Visitor& visit, T& scene) {
 /// A struct with a table.
 template <class T>
 concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> ||
-    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, AngleWeight> ||
-    Is<T, HighlightDescription> || Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> ||
-    Is<T, GroupDescription> ||
+    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, StripesPattern> ||
+    Is<T, NoisePattern> || Is<T, BumpDescription> || Is<T, AngleWeight> || Is<T, HighlightDescription> ||
+    Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, GroupDescription> ||
     Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.
@@ -726,6 +832,24 @@ inline std::string antialiasing_text(const Antialiasing& antialias) {
       return "whitted";
   }
   return {};
+}
+
+/// What a color may be beside a constant, for the key "type".
+using VaryingPattern = std::variant<CheckerPattern, StripesPattern, NoisePattern>;
+
+inline ColorPattern color_pattern(const VaryingPattern& pattern) {
+  return std::visit([](const auto& kind) { return ColorPattern(kind); }, pattern);
+}
+/// A default one where `pattern` is constant.
+inline VaryingPattern varying_pattern(const ColorPattern& pattern) {
+  return std::visit(
+      []<class T>(const T& kind) {
+        if constexpr (std::same_as<T, Rgb>)
+          return VaryingPattern();
+        else
+          return VaryingPattern(kind);
+      },
+      pattern);
 }
 
 /// Calls visit(std::in_place_type<T>) for each alternative T of a variant.

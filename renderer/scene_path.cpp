@@ -117,13 +117,13 @@ void set_part(const Place& at, const Field& field, PathRest rest, const NewValue
   } else if constexpr (std::same_as<T, ColorPattern>) {
     if (Rgb* color = std::get_if<Rgb>(&out); color != nullptr && rest.text() != ".type") {
       if (!rest.text().starts_with('[') && !PathRest(rest).take_index())
-        at.fail(0, "is a color: its parts are [0] to [2]; for a checker set \"type\" to \"checker\" first");
+        at.fail(0,
+                "is a color: its parts are [0] to [2]; for a pattern set \"type\" first, to checker, stripes or noise");
       set_part(at, field, rest, value, *color);
     } else {
-      std::variant<CheckerPattern> pattern;
-      if (color == nullptr) pattern = std::get<CheckerPattern>(out);
+      VaryingPattern pattern = varying_pattern(out);
       set_tagged(at, rest, value, pattern);
-      out = std::get<CheckerPattern>(pattern);
+      out = color_pattern(pattern);
     }
   } else {
     fail_no_parts(at, rest);

@@ -306,7 +306,7 @@ class SchemaWriter {
     color_choices(field.range, 3, false);
     out_.begin_object(JsonWriter::Layout::in_line);
     out_.key("$ref");
-    out_.value("#/$defs/checker");
+    out_.value("#/$defs/pattern");
     out_.end_object();
     out_.end_array();
   }
@@ -455,7 +455,7 @@ class ReferenceWriter {
     if constexpr (std::same_as<T, Vec3d>) return "`[x, y, z]`";
     if constexpr (std::same_as<T, ScaleFactors>) return "number or `[x, y, z]`";
     if constexpr (std::same_as<T, Rgb>) return "color";
-    if constexpr (std::same_as<T, ColorPattern>) return "color or checker";
+    if constexpr (std::same_as<T, ColorPattern>) return "color or pattern";
     if constexpr (std::same_as<T, Matrix44d>) return "transform";
     if constexpr (std::same_as<T, std::vector<Vec3d>> || std::same_as<T, std::vector<Vec3f>>)
       return "list of `[x, y, z]`";
@@ -528,9 +528,9 @@ std::string scene_schema() {
   schema.object(SceneDescription{});
   out.key("$defs");
   out.begin_object();
-  out.key("checker");
+  out.key("pattern");
   out.begin_object();
-  schema.alternatives(std::variant<CheckerPattern>(), [](SchemaWriter&) {});
+  schema.alternatives(VaryingPattern(), [](SchemaWriter&) {});
   out.end_object();
   out.key("shape");
   out.begin_object();
@@ -570,10 +570,11 @@ std::string scene_reference() {
   out.alternatives("lights.NAME", LightDescription{}.kind);
   out.table("materials.NAME", "One material: I = ambient + diffuse + highlights + k_s S + k_t T (Whitted 1980, eq. 2).",
             MaterialDescription{});
+  out.table("materials.NAME.bump", "A height over the surface; it lies still in the world.", BumpDescription{});
   out.table("materials.NAME.highlight", "W cos^n (Phong 1973, eq. 4.5).", HighlightDescription{});
   out.table("materials.NAME.highlight.weight_by_angle[]", "A point of W(i).", AngleWeight{});
   out.builtin_materials_table();
-  out.alternatives("Where a color or checker stands", std::variant<CheckerPattern>());
+  out.alternatives("Where a color or pattern stands", VaryingPattern());
   out.table("groups.NAME", "One group of shapes, in a space of its own.", GroupDescription{});
   out.table("shapes.NAME", "One shape; these keys and those of its type.", ShapeDescription{});
   out.alternatives("shapes.NAME", ShapeKind{});

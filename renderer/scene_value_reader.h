@@ -425,16 +425,17 @@ inline void read(const Place& at, const Field&, JsonValue value, Background& out
 
 inline void read(const Place& at, const Field& field, JsonValue value, ColorPattern& out) {
   if (value.kind() == JsonKind::object) {
-    std::variant<CheckerPattern> pattern;
+    VaryingPattern pattern;
     read_tagged(at, value, pattern);
-    out = std::get<CheckerPattern>(pattern);
+    out = color_pattern(pattern);
   } else if (value.kind() == JsonKind::array || value.kind() == JsonKind::number) {
     Rgb color;
     read(at, field, value, color);
     out = color;
   } else {
     at.fail(value.line(),
-            "expected a color [r, g, b], a number for a gray, or an object with \"type\": \"checker\", not " +
+            "expected a color [r, g, b], a number for a gray, or an object whose \"type\" is \"checker\", \"stripes\" "
+            "or \"noise\", not " +
                 description_of(value));
   }
 }

@@ -80,7 +80,7 @@ class SceneValueWriter {
     if (const Rgb* color = std::get_if<Rgb>(&pattern))
       write(*color);
     else
-      write_tagged(std::variant<CheckerPattern>(std::get<CheckerPattern>(pattern)), JsonWriter::Layout::in_line);
+      write_tagged(varying_pattern(pattern), JsonWriter::Layout::in_line);
   }
   void write(const Background& background) { write_tagged(background, JsonWriter::Layout::lines); }
   void write(const Matrix44d& matrix) {

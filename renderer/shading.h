@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "geometry/surface.h"
+#include "renderer/camera.h"
 #include "renderer/features.h"
 #include "renderer/light.h"
 #include "renderer/material.h"
@@ -24,21 +25,48 @@ struct ShadingPoint {
   bool leaving = false;                ///< the ray hit the surface from behind: it is leaving the inside
 };
 
-inline void complete_shading_point(ShadingPoint& point, const Vec3f& direction, const Material& material) {
+/// What of the picture an eye ray stands for: a square of so many pixels about it. Of rays further down the tree it is
+/// not known (no camera): a curved mirror spreads them in ways of its own.
+struct SampleWindow {
+  const Camera* camera = nullptr;
+  float spacing = 1;
+  bool leaves_edges = false;  ///< see Footprint
+};
+
+/// What the window covers of the plane that touches the surface, normals turned to the ray.
+Footprint footprint_of(const ShadingPoint& point, const SampleWindow& window);
+
+/// Sets `diffuse` where it varies and bends the shading normal where there is a bump.
+void vary(ShadingPoint& point, const SampleWindow& window);
+
+/// The ambient coefficient where it is a varying one of its own.
+Rgb varied_ambient(const ShadingPoint& point, const SampleWindow& window);
+
+inline void complete_shading_point(ShadingPoint& point, const Vec3f& direction, const Material& material,
+                                   const SampleWindow& window) {
   point.direction = direction;
   point.material = &material;
-  point.diffuse = material.diffuse.at(point.surface);
+  point.diffuse = material.diffuse.even;
   point.leaving = direction.dot(point.surface.geometric_normal) > 0;
   if (point.leaving) {
     point.surface.geometric_normal = -point.surface.geometric_normal;
     point.surface.shading_normal = -point.surface.shading_normal;
   }
+  if ((kFeatures.patterns || kFeatures.bumps) && material.is_varied) vary(point, window);
 }
 
-inline ShadingPoint shading_point(const SurfacePoint& surface, const Vec3f& direction, const Material& material) {
+/// The ambient coefficient.
+inline Rgb ambient_of(const ShadingPoint& point, const SampleWindow& window) {
+  const Material& material = *point.material;
+  if (material.ambient_as_diffuse) return point.diffuse;
+  return material.ambient.varies() ? varied_ambient(point, window) : material.ambient.even;
+}
+
+inline ShadingPoint shading_point(const SurfacePoint& surface, const Vec3f& direction, const Material& material,
+                                  const SampleWindow& window = {}) {
   ShadingPoint point;
   point.surface = surface;
-  complete_shading_point(point, direction, material);
+  complete_shading_point(point, direction, material, window);
   return point;
 }
 

@@ -52,7 +52,7 @@ bool TileTracer::trace_grid(int x0, int y0, int grid) {
   const ImageDescription& image = scene_.description.image;
   const int width = std::min(kTileSize, image.width - x0) * grid;
   const int height = std::min(kTileSize, image.height - y0) * grid;
-  const float spacing = 1.0f / static_cast<float>(grid);
+  spacing_ = 1.0f / static_cast<float>(grid);
   pixel_of_.resize(static_cast<std::size_t>(kTileSize) * grid);
   for (std::size_t i = 0; i < pixel_of_.size(); ++i) pixel_of_[i] = static_cast<int>(i) / grid;
   positions_.clear();
@@ -63,8 +63,8 @@ bool TileTracer::trace_grid(int x0, int y0, int grid) {
       for (int y = block_y; y < std::min(block_y + kBlockHeight, height); ++y)
         for (int x = block_x; x < std::min(block_x + kBlockWidth, width); ++x) {
           const int pixel_x = pixel_of_[x], pixel_y = pixel_of_[y];
-          positions_.emplace_back(static_cast<float>(x0) + (static_cast<float>(x) + 0.5f) * spacing,
-                                  static_cast<float>(y0) + (static_cast<float>(y) + 0.5f) * spacing);
+          positions_.emplace_back(static_cast<float>(x0) + (static_cast<float>(x) + 0.5f) * spacing_,
+                                  static_cast<float>(y0) + (static_cast<float>(y) + 0.5f) * spacing_);
           places_.push_back({static_cast<std::uint16_t>(pixel_y * kTileSize + pixel_x),
                              x - pixel_x * grid == grid / 2 && y - pixel_y * grid == grid / 2});
         }
@@ -74,7 +74,7 @@ bool TileTracer::trace_grid(int x0, int y0, int grid) {
 
 /// Traces the chunk's samples and adds them to their pixels. False: stopped.
 bool TileTracer::finish_chunk() {
-  if (!samples_.trace(positions_)) return false;
+  if (!samples_.trace(positions_, spacing_)) return false;
   const SampleResults& results = samples_.results();
   for (std::size_t i = 0; i < places_.size(); ++i)
     if (!sums_.add(places_[i].pixel, results, i)) ++samples_.statistics().not_finite_samples;

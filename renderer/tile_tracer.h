@@ -43,6 +43,7 @@ class TileTracer {
   };
   std::vector<Vec2f> positions_;
   std::vector<SamplePlace> places_;  ///< [positions_.size()]
+  float spacing_ = 1;                ///< of the samples, pixels
   std::vector<int> pixel_of_;        ///< [column or row of samples in the tile] -> of pixels
 };
 

@@ -147,7 +147,7 @@ double checker_share(int size, int x, int y) {
 
 TEST(AdaptiveSampling, ACheckerTowardTheHorizonKeepsItsAreaMean) {
   const int size = 64;
-  const auto traced = [&](const Antialiasing& antialias, const AdaptiveSampling& adaptive) {
+  const auto traced = [&](const Antialiasing& antialias, const AdaptiveSampling& adaptive, bool filtered) {
     CameraDescription camera;
     camera.position = {0, 1, 0};
     camera.target = {0, 1, -1};
@@ -155,6 +155,7 @@ TEST(AdaptiveSampling, ACheckerTowardTheHorizonKeepsItsAreaMean) {
     SceneDescription scene = dark_scene(size, camera);
     CheckerPattern checker;
     checker.even = Rgb(1), checker.odd = Rgb(0);
+    checker.filtered = filtered;
     scene.ambient = Rgb(1);
     scene.materials = {material("checker", checker)};
     scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 1, 0}}, "checker")};
@@ -164,13 +165,14 @@ TEST(AdaptiveSampling, ACheckerTowardTheHorizonKeepsItsAreaMean) {
   };
   struct Errors {
     double near = 0, far = 0, mean = 0;
+    std::uint64_t samples = 0;
   };
-  const auto errors_of = [&](const Film& film) {
+  const auto errors_of = [&](const RenderResult& result) {
     Errors errors;
     double near_count = 0, far_count = 0;
     for (int y = size / 2; y < size; ++y)
       for (int x = 0; x < size; ++x) {
-        const double d = value_at(film, x, y) - checker_share(size, x, y);
+        const double d = value_at(result.film, x, y) - checker_share(size, x, y);
         errors.mean += d / (size * size / 2.0);
         // From the eighth row below the horizon on a square is higher than a pixel.
         (y < size / 2 + 8 ? errors.far : errors.near) += d * d;
@@ -178,47 +180,76 @@ TEST(AdaptiveSampling, ACheckerTowardTheHorizonKeepsItsAreaMean) {
       }
     errors.near = std::sqrt(errors.near / near_count);
     errors.far = std::sqrt(errors.far / far_count);
+    errors.samples = result.statistics.samples;
     return errors;
   };
-  const RenderResult grid = traced({Antialiasing::Method::grid, 8}, {});
-  const RenderResult adaptive = traced({Antialiasing::Method::whitted, 1}, {});
-  const RenderResult forced = traced({Antialiasing::Method::whitted, 1}, {0.1, 4, 3});
-  const Errors by_grid = errors_of(grid.film), by_default = errors_of(adaptive.film), by_force = errors_of(forced.film);
-  for (const auto& [name, errors] : {std::pair{"grid_8", by_grid}, {"default", by_default}, {"minimum_3", by_force}}) {
-    RecordProperty(std::string(name) + "_near", std::to_string(errors.near));
-    RecordProperty(std::string(name) + "_far", std::to_string(errors.far));
-    RecordProperty(std::string(name) + "_mean", std::to_string(errors.mean));
+  constexpr Antialiasing kNone{Antialiasing::Method::none, 1}, kGrid{Antialiasing::Method::grid, 3},
+      kFine{Antialiasing::Method::grid, 8}, kWhitted{Antialiasing::Method::whitted, 1};
+  const AdaptiveSampling usual, forced{0.1, 4, 3};
+  const auto measured = [&](const char* name, const Antialiasing& antialias, const AdaptiveSampling& adaptive,
+                            bool filtered) {
+    const Errors errors = errors_of(traced(antialias, adaptive, filtered));
+    const std::string prefix = std::string(filtered ? "filtered_" : "points_") + name;
+    RecordProperty(prefix + "_near", std::to_string(errors.near));
+    RecordProperty(prefix + "_far", std::to_string(errors.far));
+    RecordProperty(prefix + "_mean", std::to_string(errors.mean));
+    RecordProperty(prefix + "_samples", std::to_string(double(errors.samples) / (size * size / 2)));
+    return errors;
+  };
+
+  // Two edges a pixel where squares are larger than pixels; there the samples are points with the filter and without.
+  const Errors usual_points = measured("whitted", kWhitted, usual, false),
+               usual_filtered = measured("whitted", kWhitted, usual, true);
+  EXPECT_LE(usual_points.near, 2 * typical_edge_error(4));
+  EXPECT_LE(usual_filtered.near, 2 * typical_edge_error(4));
+  // Beyond, a point is as good as a coin, and points that agree by chance deceive. Filtered ones do not: y pixels below
+  // the horizon a pixel reaches over L = 32 / y^2 squares, so what it covers and what its corners show differ from 1/2
+  // by up to 1 / (2 L), 1 / sqrt(3) of that in the mean square, and the mean of four corners by half as much. In the
+  // first three rows, L >= 5, corners hardly differ and a pixel may be left as it is: off by sqrt(5 / 12) / (2 L) at
+  // most, which is 1/16 in the third. Further down they differ by enough for the third level, whose 9 x 9 points leave
+  // 1/18.
+  EXPECT_LE(usual_filtered.far, 1.0 / 16);
+  EXPECT_LE(usual_filtered.far, usual_points.far * 2 / 3);
+  EXPECT_LE(usual_filtered.samples, usual_points.samples * 4 / 5);
+  EXPECT_LE(std::abs(usual_filtered.mean), 1.0 / 255);
+  EXPECT_LE(std::abs(usual_points.mean), 1.0 / 255);
+
+  // 9 x 9 points leave 1/18.
+  EXPECT_LE(measured("minimum_3", kWhitted, forced, false).far, 1.0 / 18);
+  EXPECT_LE(measured("minimum_3", kWhitted, forced, true).far, 1.0 / 18);
+
+  // One filtered sample a pixel, or nine, tell more than 64 points.
+  const Errors fine = measured("grid_8", kFine, usual, false);
+  for (const auto& [name, antialias] : {std::pair{"none", kNone}, {"grid_3", kGrid}}) {
+    const Errors points = measured(name, antialias, usual, false), filtered = measured(name, antialias, usual, true);
+    EXPECT_LE(filtered.far, fine.far) << name;
+    EXPECT_LE(filtered.near, fine.near) << name;
+    EXPECT_LE(filtered.far, points.far / 8) << name;
+    EXPECT_LE(std::abs(filtered.mean), 1e-4) << name;
   }
-  // Two edges a pixel where squares are larger than pixels.
-  EXPECT_LE(by_default.near, 2 * typical_edge_error(4));
-  // Beyond, a sample is as good as a coin. 9 x 9 of them leave 1/18; by default one pixel in eight has equal corners,
-  // and in (9/16)^4 of those its sides tell nothing either: they are off by 1/2, which makes .06 over all pixels, and
-  // squares within pixels are deceived alike: twice that.
-  EXPECT_LE(by_force.far, 1.0 / 18);
-  EXPECT_LE(by_default.far, 0.12);
-  EXPECT_LE(std::abs(by_default.mean), 1.0 / 255);
-  EXPECT_LE(std::abs(by_force.mean), 1.0 / 255);
-  EXPECT_LT(adaptive.statistics.samples, grid.statistics.samples / 2);
+  EXPECT_LT(usual_filtered.samples, fine.samples / 2);
 }
 
 // --- what equal corners hide (catalogue of failures, 23) ---
 
 TEST(AdaptiveSampling, AMinimumLevelFindsWhatEqualCornersHide) {
   // Stripes one pixel apart: every corner of a pixel is white and all between is black.
-  const auto traced = [](int minimum_level) {
+  const auto traced = [](int minimum_level, bool filtered) {
     SceneDescription scene = white_on_black(16);
     CheckerPattern stripes;
     stripes.plane = CheckerPattern::Plane::xy;
     stripes.even = Rgb(1), stripes.odd = Rgb(0);
     stripes.size = 0.5;
     stripes.offset = {-0.25, -0.25};
+    stripes.filtered = filtered;
     scene.materials = {material("white", stripes)};
     scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "white")};
     scene.render.adaptive.minimum_level = minimum_level;
     return rendered(std::move(scene));
   };
-  EXPECT_EQ(value_at(traced(0).film, 8, 8), 1);  // what the corners say
-  const RenderResult found = traced(1);
+  EXPECT_EQ(value_at(traced(0, false).film, 8, 8), 1);           // what the corners say
+  EXPECT_NEAR(value_at(traced(0, true).film, 8, 8), 0.5, 1e-6);  // what they say of what they stand for
+  const RenderResult found = traced(1, false);
   for (int y = 1; y < 15; ++y)
     for (int x = 1; x < 15; ++x) EXPECT_NEAR(value_at(found.film, x, y), 0.5, largest_edge_error(4)) << x << ", " << y;
 }
@@ -436,6 +467,8 @@ TEST(AdaptiveSampling, CostsAThirdOfAGridAtMostAtEqualError) {
   const auto traced = [&](const Antialiasing& antialias) {
     SceneDescription scene = builtin_scene("spheres-1980");
     scene.image = {width, height};
+    // Points of the checker for both: filtered, its edges cost a grid nothing, and what is compared is the filter.
+    std::get<CheckerPattern>(scene.materials.back().diffuse).filtered = false;
     scene.render.antialias = antialias;
     return rendered(std::move(scene), {ChannelGroup::color});
   };

@@ -9,6 +9,7 @@
 
 #include "renderer/scene.h"
 #include "renderer/scene_reader.h"
+#include "tests/renderer/test_scenes.h"
 
 namespace raytree {
 namespace {
@@ -25,7 +26,8 @@ TEST(BuiltinScenes, AllReadAndRoundTrip) {
     const std::string text = write_scene(description);
     EXPECT_EQ(write_scene(read_scene(text, scene.name, "")), text) << scene.name;
   }
-  for (const char* name : {"spheres-1980", "sphere-flake", "terrain", "forest", "stepwedge", "mirrors", "lens", "glass"})
+  for (const char* name : {"spheres-1980", "sphere-flake", "terrain", "forest", "stepwedge", "mirrors", "lens", "glass",
+                           "whitted-fig6", "whitted-fig7"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
 }
 
@@ -75,7 +77,82 @@ TEST(BuiltinScenes, WhittedsPictureHasAGlassAndAMirrorSphereOverAFiniteChecker) 
   EXPECT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.image.width, 960);
   EXPECT_EQ(scene.image.height, 720);
-  EXPECT_EQ(scene.render.antialias.grid_size, 3);
+  EXPECT_EQ(scene.render.antialias.method, Antialiasing::Method::whitted);
+}
+
+/// The scene as `change` makes it, small, one sample a pixel. Read anew each time, since rendering consumes meshes.
+template <class Change>
+RenderResult sketched(const char* name, const Change& change) {
+  SceneDescription scene = builtin_scene(name);
+  scene.image = {160, 120};
+  scene.render.antialias = {Antialiasing::Method::none, 1};
+  change(scene);
+  return test::rendered(std::move(scene));
+}
+/// Pixels that show shape `id` in both pictures and differ.
+int changed_pixels(const RenderResult& a, const RenderResult& b, std::uint32_t id) {
+  int changed = 0;
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 160; ++x) {
+      const std::size_t i = test::pixel_index(a.film, x, y);
+      if (a.film.id_plane(ChannelGroup::object_id)[i] != id || b.film.id_plane(ChannelGroup::object_id)[i] != id)
+        continue;
+      const Rgb d = test::color_at(a.film, x, y) - test::color_at(b.film, x, y);
+      changed += std::abs(d.r) + std::abs(d.g) + std::abs(d.b) > 0.02f;
+    }
+  return changed;
+}
+
+TEST(BuiltinScenes, Figure6ShowsThreeGlossyWrinkledObjectsThatShadowAndReflectEachOther) {
+  const SceneDescription scene = builtin_scene("whitted-fig6");
+  ASSERT_EQ(scene.shapes.size(), 4u);
+  EXPECT_EQ(scene.render.antialias.method, Antialiasing::Method::whitted);
+  // Without shadows: what changes on the others when one is taken away is its reflection.
+  const auto picture = [](const auto& change) {
+    return sketched("whitted-fig6", [&](SceneDescription& changed) {
+      changed.render.shadows = false;
+      change(changed);
+    });
+  };
+  const RenderResult all = picture([](SceneDescription&) {});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const MaterialDescription& material = scene.materials.at(i);
+    ASSERT_EQ(scene.shapes[i].material, material.name);
+    EXPECT_TRUE(material.bump.has_value());
+    EXPECT_GT(max_channel(material.highlight.weight), 0.3f);
+    const RenderResult without = picture([&](SceneDescription& changed) {
+      std::get<SphereShape>(changed.shapes[i].kind).center = {0, -1000, 0};
+    });
+    for (std::size_t other = 0; other < 3; ++other)
+      if (other != i) {
+        EXPECT_GT(changed_pixels(all, without, static_cast<std::uint32_t>(other + 1)), 15) << i << " in " << other;
+      }
+    const RenderResult smooth = picture([&](SceneDescription& changed) { changed.materials[i].bump.reset(); });
+    EXPECT_GT(changed_pixels(all, smooth, static_cast<std::uint32_t>(i + 1)), 300) << "wrinkles of " << i;
+  }
+  const RenderResult shadowed = sketched("whitted-fig6", [](SceneDescription&) {});
+  EXPECT_GT(changed_pixels(all, shadowed, 4), 1000) << "shadows on the table";
+}
+
+TEST(BuiltinScenes, Figure7ShowsACheckerThroughAnObjectThatRefracts) {
+  const SceneDescription scene = builtin_scene("whitted-fig7");
+  EXPECT_EQ(scene.render.antialias.method, Antialiasing::Method::whitted);
+  const MaterialDescription& glass = scene.materials.at(0);
+  EXPECT_GT(max_channel(glass.transmission), 0.5f);
+  EXPECT_FALSE(scene.render.fresnel) << "the paper's pictures hold k_s and k_t constant";
+  const RenderResult result = sketched("whitted-fig7", [](SceneDescription&) {});
+  const RenderResult straight =
+      sketched("whitted-fig7", [](SceneDescription& changed) { changed.materials.at(0).index_of_refraction = 1; });
+  EXPECT_GT(changed_pixels(result, straight, 1), 1500) << "what is behind is seen elsewhere";
+  // The upper half of the ball shows the floor, red and yellow, where straight behind it is sky.
+  int upside_down = 0;
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 160; ++x) {
+      const Rgb color = test::color_at(result.film, x, y);
+      upside_down += result.film.id_plane(ChannelGroup::object_id)[test::pixel_index(result.film, x, y)] == 1 &&
+                     color.r > 2 * color.b;
+    }
+  EXPECT_GT(upside_down, 500);
 }
 
 TEST(BuiltinScenes, TheForestIsThousandsOfInstancesOfAFewTreesOnTheGround) {

@@ -54,7 +54,29 @@ class RandomScenes {
         checker.plane = static_cast<CheckerPattern::Plane>(integer(0, 2));
         m.diffuse = checker;
       }
-      if (chance(0.3)) m.ambient = color(1);
+      if (chance(0.15)) {
+        StripesPattern stripes;
+        stripes.even = color(1), stripes.odd = color(1);
+        stripes.size = uniform(0.05, 2), stripes.direction = point(1) + Vec3d(2, 0, 0), stripes.smooth = chance(0.5);
+        m.diffuse = stripes;
+      }
+      if (chance(0.2)) {
+        NoisePattern noise;
+        noise.low = color(1), noise.high = color(1);
+        noise.size = uniform(0.05, 2), noise.octaves = integer(1, 5), noise.contrast = uniform(0, 6);
+        if (chance(0.5))
+          m.diffuse = noise;
+        else
+          m.ambient = noise;
+      }
+      if (chance(0.4)) {
+        BumpDescription bump;
+        bump.kind = static_cast<BumpDescription::Kind>(integer(0, 3));
+        bump.size = uniform(0.1, 2), bump.amplitude = bump.size * uniform(-1, 1), bump.octaves = integer(1, 3);
+        bump.offset = point(3), bump.direction = point(1) + Vec3d(0, 2, 0);
+        m.bump = bump;
+      }
+      if (!m.ambient && chance(0.3)) m.ambient = color(1);
       if (chance(0.6)) m.highlight = {color(0.8), uniform(1, 80)};
       if (chance(0.8)) m.reflection = color(chance(0.2) ? 1.2 : 0.6);
       if (chance(0.6)) m.transmission = color(chance(0.2) ? 1.2 : 0.6);

@@ -13,8 +13,8 @@ namespace {
 
 using namespace test;
 
-/// Every feature at once: mirrors, glass, both lights, checker, gradient, smooth mesh, planes, discs, spheres; liquid
-/// that reaches into colored glass, a thin sheet, metal with a highlight by angle.
+/// Every feature at once: mirrors, glass, both lights, patterns, bumps, gradient, smooth mesh, planes, discs, spheres;
+/// liquid that reaches into colored glass, a thin sheet, metal with a highlight by angle.
 SceneDescription busy_scene() {
   CameraDescription camera;
   camera.position = {1, 2, 7};
@@ -44,6 +44,15 @@ SceneDescription busy_scene() {
   metal.conductor = true, metal.reflection = Rgb(0.9f, 0.6f, 0.3f);
   metal.highlight = {Rgb(0), 6, {{0, Rgb(0.6f)}, {80, Rgb(0.8f)}}};
   scene.materials.insert(scene.materials.end(), {bottle, liquid, sheet, metal});
+  NoisePattern noise;
+  noise.size = 0.3;
+  scene.materials[3].diffuse = noise;
+  StripesPattern stripes;
+  stripes.size = 0.1, stripes.direction = {1, 1, 0.3};
+  scene.materials[2].ambient = stripes;
+  scene.materials[1].bump = BumpDescription{BumpDescription::Kind::ripples, 0.01, 0.2};
+  scene.materials[2].bump = BumpDescription{BumpDescription::Kind::wrinkles, 0.03, 0.3, 2};
+  scene.materials[3].bump = BumpDescription{BumpDescription::Kind::noise, 0.05, 0.3, 3};
   scene.lights = {directional_light({-1, -2, -1}), point_light({3, 4, 5}, Rgb(0.5f))};
   scene.shapes = {shape(PlaneShape{{0, -1, 0}, {0, 1, 0}}, "floor"),
                   shape(SphereShape{{-1.2, 0, 0}, 1}, "glass"),

@@ -293,6 +293,7 @@ TEST(RayTree, AGridOfSamplesIsTheirMean) {
   // An edge through the middle of a cell column: with grid N the pixel's share is a whole number of columns.
   SceneDescription scene = dark_scene(8, front_camera(8));
   CheckerPattern edge;
+  edge.filtered = false;
   edge.plane = CheckerPattern::Plane::xy;
   edge.even = Rgb(1), edge.odd = Rgb(0);
   edge.size = 1000;
@@ -354,6 +355,7 @@ TEST(NotFinite, OneBadSampleOfAPixelTakesOnlyItsShare) {
   CheckerPattern edge;
   edge.plane = CheckerPattern::Plane::xy;
   edge.even = Rgb(kNan), edge.odd = Rgb(1);
+  edge.filtered = false;
   edge.size = 1000;
   edge.offset = {0.5, -500};
   scene.ambient = Rgb(1);
@@ -365,6 +367,36 @@ TEST(NotFinite, OneBadSampleOfAPixelTakesOnlyItsShare) {
   EXPECT_EQ(color_at(result.film, 0, 0).r, 1);
   EXPECT_EQ(result.statistics.not_finite_samples, 4u);
   expect_finite(result.film);
+}
+
+TEST(NotFinite, PatternsAndBumpsOfAnySizeGiveNumbers) {
+  for (const double size : {1e-300, 1e-18, 1e-6, 1.0, 1e6, 1e18})
+    for (const auto method : {Antialiasing::Method::none, Antialiasing::Method::whitted}) {
+      SceneDescription scene = sphere_on_floor();
+      scene.cameras[0].position = {0, 1, 10};  // sees the floor up to the horizon
+      scene.cameras[0].target = {0, 1 - 1e-3, 0};
+      scene.cameras[0].projection = CameraDescription::Projection::perspective;
+      scene.render.antialias.method = method;
+      scene.render.adaptive.levels = 1;
+      StripesPattern stripes;
+      stripes.size = size;
+      NoisePattern noise;
+      noise.size = size, noise.octaves = 3;
+      CheckerPattern checker;
+      checker.size = size;
+      for (const ColorPattern& pattern : {ColorPattern(stripes), ColorPattern(noise), ColorPattern(checker)})
+        for (const auto kind : {BumpDescription::Kind::noise, BumpDescription::Kind::wrinkles,
+                                BumpDescription::Kind::ripples, BumpDescription::Kind::stripes})
+          for (const double amplitude : {1e-18, 1.0, -1e18}) {
+            for (MaterialDescription& m : scene.materials) {
+              m.diffuse = pattern;
+              m.bump = BumpDescription{kind, amplitude, size};
+            }
+            const RenderResult result = rendered(scene);
+            ASSERT_EQ(result.statistics.not_finite_samples, 0u) << size << " " << amplitude;
+            expect_finite(result.film);
+          }
+    }
 }
 
 TEST(NotFinite, RaysThatAreNotFiniteAreReportedAndAreNotBackground) {

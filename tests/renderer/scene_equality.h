@@ -54,8 +54,24 @@ inline bool equal(const SpotLight& a, const SpotLight& b) {
          falloff == b.falloff && least_distance == b.least_distance;
 }
 inline bool equal(const CheckerPattern& a, const CheckerPattern& b) {
-  const auto& [even, odd, size, plane, offset] = a;
-  return even == b.even && odd == b.odd && size == b.size && plane == b.plane && offset == b.offset;
+  const auto& [even, odd, size, plane, offset, filtered] = a;
+  return even == b.even && odd == b.odd && size == b.size && plane == b.plane && offset == b.offset &&
+         filtered == b.filtered;
+}
+inline bool equal(const StripesPattern& a, const StripesPattern& b) {
+  const auto& [even, odd, size, direction, smooth, space, offset, filtered] = a;
+  return even == b.even && odd == b.odd && size == b.size && direction == b.direction && smooth == b.smooth &&
+         space == b.space && offset == b.offset && filtered == b.filtered;
+}
+inline bool equal(const NoisePattern& a, const NoisePattern& b) {
+  const auto& [low, high, size, octaves, gain, contrast, seed, space, offset, filtered] = a;
+  return low == b.low && high == b.high && size == b.size && octaves == b.octaves && gain == b.gain &&
+         contrast == b.contrast && seed == b.seed && space == b.space && offset == b.offset && filtered == b.filtered;
+}
+inline bool equal(const BumpDescription& a, const BumpDescription& b) {
+  const auto& [kind, amplitude, size, octaves, gain, seed, offset, direction] = a;
+  return kind == b.kind && amplitude == b.amplitude && size == b.size && octaves == b.octaves && gain == b.gain &&
+         seed == b.seed && offset == b.offset && direction == b.direction;
 }
 inline bool equal(const HighlightDescription& a, const HighlightDescription& b) {
   const auto& [weight, exponent, table] = a;
@@ -133,11 +149,12 @@ inline bool equal(const LightDescription& a, const LightDescription& b) {
 }
 inline bool equal(const MaterialDescription& a, const MaterialDescription& b) {
   const auto& [name, diffuse, ambient, highlight, reflection, transmission, index, fresnel, conductor, absorption, thin,
-               priority] = a;
+               priority, bump] = a;
   return name == b.name && equal(diffuse, b.diffuse) && ambient.has_value() == b.ambient.has_value() &&
          (!ambient || equal(*ambient, *b.ambient)) && equal(highlight, b.highlight) && reflection == b.reflection &&
          transmission == b.transmission && index == b.index_of_refraction && fresnel == b.fresnel &&
-         conductor == b.conductor && absorption == b.absorption && thin == b.thin && priority == b.priority;
+         conductor == b.conductor && absorption == b.absorption && thin == b.thin && priority == b.priority &&
+         bump.has_value() == b.bump.has_value() && (!bump || equal(*bump, *b.bump));
 }
 /// All but where it stood in its file.
 inline bool equal(const ShapeDescription& a, const ShapeDescription& b) {

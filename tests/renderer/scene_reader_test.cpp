@@ -134,7 +134,8 @@ TEST(SceneReader, RefusalsSayWhatWhereAndWhatWouldBeRight) {
   EXPECT_EQ(
       refusal("\"materials\": {\n \"glass\": {\n  \"difuse\": 1}}"),
       "s.json:4: materials.glass: unknown key \"difuse\"; known keys: from, diffuse, ambient, highlight, reflection, "
-      "transmission, index_of_refraction, fresnel, conductor, absorption, thin, priority (did you mean \"diffuse\"?)");
+      "transmission, index_of_refraction, fresnel, conductor, absorption, thin, priority, bump (did you mean "
+      "\"diffuse\"?)");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\n\"type\": \"direct\"}}"),
             "s.json:3: lights.sun.type: unknown type \"direct\"; known types: directional, point, spot (did you mean "
             "\"directional\"?)");
@@ -209,7 +210,18 @@ TEST(SceneReader, RangesHoldAtTheirEnds) {
       {R"("materials": {"m": {"highlight": {"exponent": 1}}})", true},
       {R"("materials": {"m": {"highlight": {"exponent": 0.99}}})", false},
       {R"("materials": {"m": {"diffuse": {"type": "checker", "size": 0}}})", false},
-      {R"("materials": {"m": {"diffuse": {"type": "stripes"}}})", false},
+      {R"("materials": {"m": {"diffuse": {"type": "spots"}}})", false},
+      {R"("materials": {"m": {"diffuse": {"type": "stripes", "direction": [0, 0, 0]}}})", false},
+      {R"("materials": {"m": {"diffuse": {"type": "stripes", "even": -1}}})", false},
+      {R"("materials": {"m": {"ambient": {"type": "noise", "octaves": 16}}})", true},
+      {R"("materials": {"m": {"ambient": {"type": "noise", "octaves": 17}}})", false},
+      {R"("materials": {"m": {"ambient": {"type": "noise", "gain": 1.1}}})", false},
+      {R"("materials": {"m": {"ambient": {"type": "noise", "contrast": -1}}})", false},
+      {R"("materials": {"m": {"bump": {"amplitude": -1}}})", true},
+      {R"("materials": {"m": {"bump": {"size": 0}}})", false},
+      {R"("materials": {"m": {"bump": {"kind": "waves"}}})", false},
+      {R"("materials": {"m": {"bump": {"direction": [0, 0, 0]}}})", false},
+      {R"("materials": {"m": {"bump": 0.1}})", false},
       {R"("shapes": {"s": {"type": "terrain", "triangles": 2}})", true},
       {R"("shapes": {"s": {"type": "terrain", "triangles": 1}})", false},
       {R"("shapes": {"s": {"type": "terrain", "triangles": 5e7}})", true},
@@ -455,8 +467,7 @@ TEST(SetSceneValue, RefusalsNameThePathAndTheChoices) {
   EXPECT_NE(set_refusal("shapes.floor.faces", "[[0, 1, 9]]").find("index 9 is out of range"), std::string::npos);
   EXPECT_NE(set_refusal("shapes.file.faces", "[[0, 1, 2]]").find("comes from a file"), std::string::npos);
   EXPECT_NE(set_refusal("materials.glass.ambient.size", "1").find("set it as a whole first"), std::string::npos);
-  EXPECT_NE(set_refusal("materials.glass.diffuse.size", "1").find("set \"type\" to \"checker\" first"),
-            std::string::npos);
+  EXPECT_NE(set_refusal("materials.glass.diffuse.size", "1").find("set \"type\" first"), std::string::npos);
   for (const char* path : {"", ".", "..", "[", "[0]", "materials", "materials.", "materials..x", "\"", "shapes.\"",
                            "render.", "lights.sun.type.x", "image[0]"})
     EXPECT_NE(set_refusal(path, "1"), "accepted") << path;
@@ -561,12 +572,16 @@ class Randomizer {
       fill(field, color);
       x = color;
     } else {
-      CheckerPattern checker;
-      visit_fields(*this, checker);
-      x = checker;
+      VaryingPattern pattern;
+      tagged({}, pattern);
+      x = color_pattern(pattern);
     }
   }
   void fill(const Field& field, std::optional<ColorPattern>& x) {
+    x.reset();
+    if (whole(0, 1) == 0) fill(field, x.emplace());
+  }
+  void fill(const Field& field, std::optional<BumpDescription>& x) {
     x.reset();
     if (whole(0, 1) == 0) fill(field, x.emplace());
   }
@@ -699,10 +714,13 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(PointLight{}), 3);
   EXPECT_EQ(count(SpotLight{}), 6);
   EXPECT_EQ(count(LightDescription{}), 3 - 1) << "without name";
-  EXPECT_EQ(count(CheckerPattern{}), 5);
+  EXPECT_EQ(count(CheckerPattern{}), 6);
+  EXPECT_EQ(count(StripesPattern{}), 8);
+  EXPECT_EQ(count(NoisePattern{}), 10);
+  EXPECT_EQ(count(BumpDescription{}), 8);
   EXPECT_EQ(count(AngleWeight{}), 2);
   EXPECT_EQ(count(HighlightDescription{}), 3);
-  EXPECT_EQ(count(MaterialDescription{}), 12 - 1 + 1) << "without name, with \"from\"";
+  EXPECT_EQ(count(MaterialDescription{}), 13 - 1 + 1) << "without name, with \"from\"";
   EXPECT_EQ(count(FaceGroup{}), 4);
   EXPECT_EQ(count(MeshShape{}), 4);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";

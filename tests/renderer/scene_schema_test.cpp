@@ -125,10 +125,17 @@ Json rich_document() {
                          "field_of_view": 40, "height": 2}},
     "lights": {"a": {"type": "directional", "direction": [0, -1, 0], "color": 1},
                "b": {"type": "point", "position": [0, 1, 0], "color": [1, 1, 1]}},
-    "materials": {"m": {"diffuse": {"type": "checker", "even": 1, "odd": 0, "size": 1, "plane": "uv", "offset": [0, 0]},
-                        "ambient": 1, "highlight": {"weight": 1, "exponent": 2}, "reflection": 0, "transmission": 0,
+    "materials": {"m": {"diffuse": {"type": "checker", "even": 1, "odd": 0, "size": 1, "plane": "uv", "offset": [0, 0],
+                                    "filtered": false},
+                        "ambient": {"type": "stripes", "even": 1, "odd": 0, "size": 1, "direction": [1, 0, 0],
+                                    "smooth": true, "space": "uv", "offset": [0, 0, 0], "filtered": true},
+                        "highlight": {"weight": 1, "exponent": 2}, "reflection": 0, "transmission": 0,
                         "index_of_refraction": 1.5, "conductor": false, "absorption": [0, 1, 2], "thin": false,
                         "priority": 1},
+                  "n": {"diffuse": {"type": "noise", "low": 1, "high": 0, "size": 1, "octaves": 2, "gain": 0.5, "contrast": 1,
+                                    "seed": 7, "space": "world", "offset": [0, 0, 0], "filtered": true},
+                        "bump": {"kind": "ripples", "amplitude": -0.1, "size": 1, "octaves": 2, "gain": 0.5, "seed": 1,
+                                 "offset": [0, 0, 0], "direction": [0, 1, 0]}},
                   "p": {"from": "phong-red", "highlight": {"weight_by_angle": [{"angle": 0, "weight": 0.5},
                                                                               {"angle": 90, "weight": [1, 1, 0]}]}}},
     "shapes": {
@@ -229,6 +236,7 @@ TEST(SceneSchema, AgreesWithTheReaderAboutChangedDocuments) {
                                  Json::array({0, 1}),
                                  Json::object(),
                                  Json::parse(R"({"type": "checker"})"),
+                                 Json::parse(R"({"type": "noise"})"),
                                  Json::parse(R"({"type": "constant"})")};
   compared = 0;
   for_each_place(right, Json::json_pointer(), [&](const Json::json_pointer& place) {
@@ -334,7 +342,7 @@ TEST(SceneSchema, DefaultsAreThoseOfTheReader) {
     check_alternatives(top[key]["additionalProperties"], [&](const Json& given) {
       return scene_with(key, {{"x", given}});
     });
-  check_alternatives(schema()["$defs"]["checker"], [&](const Json& given) {
+  check_alternatives(schema()["$defs"]["pattern"], [&](const Json& given) {
     return scene_with("materials", {{"x", {{"diffuse", given}}}});
   });
   EXPECT_GT(defaults, 40);
@@ -363,7 +371,7 @@ TEST(SceneReference, StandsInTheDocumentation) {
     EXPECT_NE(document.find("| `" + key + "` |"), document.npos) << place;
   };
   for_each_property(schema(), "", named);
-  for_each_property(schema()["$defs"]["checker"], "", named);
+  for_each_property(schema()["$defs"]["pattern"], "", named);
   for_each_property(schema()["$defs"]["transform_step"], "", named);
   for_each_property(schema()["$defs"]["shape"], "", named);
   EXPECT_GT(keys, 70);

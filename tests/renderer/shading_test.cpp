@@ -235,6 +235,7 @@ TEST(Shading, CheckerLooksUpTheSquareThatAPointLiesIn) {
   checker.plane = CheckerPattern::Plane::xy;
   checker.size = 1.5;
   checker.offset = {0.35, -0.15};
+  checker.filtered = false;
   scene.materials = {material("m", checker)};
   scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "m")};
   const RenderResult result = rendered(scene);
@@ -257,6 +258,7 @@ TEST(Shading, CheckerFollowsTheWorldWhereTheSceneIsRecentered) {
   checker.even = Rgb(1);
   checker.odd = Rgb(0);
   checker.plane = CheckerPattern::Plane::xy;
+  checker.filtered = false;
   for (const double offset : {0.0, 1e6}) {
     CameraDescription camera = front_camera(4);
     camera.position = {offset, 0, 10};
