@@ -1,5 +1,5 @@
 // Objects that samples may miss: what the picture shows of shapes that are narrow, found when the scene is prepared, so
-// that the adaptive sampler can look closer around them. An object is a shape; a mesh's triangles are none.
+// that the adaptive sampler can look closer around them. An object is a shape or an instance; triangles are none.
 #pragma once
 
 #include <cmath>
@@ -39,7 +39,7 @@ struct ImageRectangle {
 struct SmallObject {
   std::vector<Vec2d> outline;  ///< convex, counter-clockwise as x and y have it, pixels
   ImageRectangle box;          ///< the narrowest that holds the outline
-  ShapeId shape = 0;
+  std::uint32_t shape = 0;  ///< index among the scene's objects: of a shape, or Instance::object
 
   double width() const { return 2 * box.half_width; }
 };
