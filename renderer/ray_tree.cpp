@@ -382,11 +382,10 @@ void SampleTracer::State::add_lights() {
 
 void SampleTracer::State::spawn() {
   std::uint64_t branches_at_limit = 0;
-  const bool media_matter = tracks_media();
   for (const BatchPoint& point : batch_points()) {
     const Material& material = *point.shading.material;
     if (!material.has_reflection && !material.has_transmission) continue;
-    if (media_matter || (kFeatures.special_optics && material.special_optics))
+    if ((kFeatures.special_optics || kFeatures.media) && material.special_optics)
       branches_at_limit += spawn_specially(point);
     else
       branches_at_limit += spawn_children(point, plain_branches(point.shading), kNoMedia, kNoMedia);
