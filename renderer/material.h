@@ -41,7 +41,7 @@ struct Material {
   bool fresnel = false;            ///< k_s F and k_t (1 - F)
   bool needs_texture = false;      ///< some pattern looks at texture coordinates
 
-  bool special_optics = false;    ///< thin or a conductor
+  bool special_optics = false;    ///< thin, a conductor, or in a scene that tracks media
   bool conductor = false;         ///< k_s rises to 1 by Schlick's formula
   bool thin = false;              ///< a sheet without an inside
   bool has_inside = false;        ///< transmits and is not thin

@@ -108,11 +108,13 @@ struct SampleTracer::State {
   void prefetch_triangles(const ShapeSet& shapes) const;
   std::span<const BatchPoint> batch_points() const { return {points.data(), point_count}; }
   void find_eye_media(std::span<const Vec2f> positions);
-  bool passes(BatchPoint& point, MediaBoundary& boundary, const PendingRay& ray, const Hit& hit);
+  bool passes(std::size_t p, const PendingRay& ray, const Hit& hit);
   Rgb escaping_weight(const PendingRay& ray) const { return ray.weight * media->transmitted(ray.media, kInfinity); }
   void add_lights();
   void follow_shadows(std::size_t count);
   void spawn();
+  unsigned spawn_specially(const BatchPoint& point);
+  unsigned spawn_children(const BatchPoint& point, const Branches& children, MediaId before, MediaId after);
   void cut(std::uint32_t sample, const Rgb& bound);
   void add_children(RayKind kind, std::vector<PendingRay>& children);
   void record_first_hit(const BatchPoint& point, std::uint32_t object, std::uint32_t material);
@@ -262,14 +264,12 @@ void SampleTracer::State::collect_hits(bool eye) {
     point.allowance = ray.allowance;
     point.sample = ray.sample;
     point.level = ray.level;
-    if (kFeatures.absorption && material.absorbs && point.shading.leaving && !media_matter)
-      point.weight *= transmitted_share(material.absorption, point.shading.surface.distance);
-    if (media_matter && passes(point, boundaries[count], ray, hit)) continue;
+    if ((media_matter || (kFeatures.absorption && material.absorbs)) && passes(count, ray, hit)) continue;
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && ray.level > 1)
       point.weight *=
           segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);
     results.radiance[ray.sample] += point.weight * scene.ambient * ambient_of(point.shading, window);
-    if (kFeatures.first_hit_channels && ray.level == 1 && records.first_hits)
+    if (kFeatures.first_hit_channels && records.first_hits && ray.level == 1)
       record_first_hit(point, object, material_index);
     ++count;
   }
@@ -290,10 +290,16 @@ void SampleTracer::State::collect_hits(bool eye) {
   }
 }
 
-/// What a point's surface separates. True: nothing; the ray goes on behind it, at its level.
-[[gnu::noinline]] bool SampleTracer::State::passes(BatchPoint& point, MediaBoundary& boundary, const PendingRay& ray,
-                                                   const Hit& hit) {
+/// Takes what was absorbed on the way to a point, and says what its surface separates. True: nothing; the ray goes on
+/// behind it, at its level.
+[[gnu::noinline]] bool SampleTracer::State::passes(std::size_t p, const PendingRay& ray, const Hit& hit) {
+  BatchPoint& point = points[p];
   const SurfacePoint& surface = point.shading.surface;
+  if (!tracks_media()) {
+    if (point.shading.leaving) point.weight *= transmitted_share(point.shading.material->absorption, surface.distance);
+    return false;
+  }
+  MediaBoundary& boundary = boundaries[p];
   boundary = media->boundary(ray.media, solid_at(scene, hit), point.shading.leaving);
   point.weight *= media->transmitted(boundary.before, surface.distance);
   if (!boundary.passes) return false;
@@ -391,44 +397,54 @@ void SampleTracer::State::add_lights() {
 
 void SampleTracer::State::spawn() {
   std::uint64_t branches_at_limit = 0;
-  const bool media_matter = tracks_media();
   for (const BatchPoint& point : batch_points()) {
     const Material& material = *point.shading.material;
     if (!material.has_reflection && !material.has_transmission) continue;
-    const std::size_t p = static_cast<std::size_t>(&point - points.data());
-    const Branches children =
-        media_matter ? branches_between(point.shading, boundaries[p].relative_index) : branches(point.shading);
-    const Rgb reflected_weight = point.weight * children.reflected_weight;
-    const Rgb refracted_weight = point.weight * children.refracted_weight;
-    const bool reflects = !is_black(reflected_weight), refracts = !is_black(refracted_weight);
-    const int level = static_cast<int>(point.level);
-    if (level >= settings.depth) {
-      branches_at_limit += reflects + refracts;
-      continue;
-    }
-    const Rgb below = scene.bound(settings.depth - level - 1);
-    const Rgb reflected_bound = reflected_weight * below, refracted_bound = refracted_weight * below;
-    const Shares shares =
-        divided_allowance(point.allowance, max_channel(reflected_bound), max_channel(refracted_bound));
-    const SurfacePoint& surface = point.shading.surface;
-    if (reflects) {
-      if (shares.cuts_reflected)
-        cut(point.sample, reflected_bound);
-      else
-        reflected_rays.push_back({offset_origin(surface, surface.geometric_normal), shares.reflected,
-                                  children.reflected, point.sample, media_matter ? boundaries[p].before : kNoMedia,
-                                  reflected_weight, point.level + 1});
-    }
-    if (refracts) {
-      if (shares.cuts_refracted)
-        cut(point.sample, refracted_bound);
-      else
-        refracted_rays.push_back({offset_origin(surface, -surface.geometric_normal), shares.refracted,
-                                  children.refracted, point.sample, media_matter ? boundaries[p].after : kNoMedia,
-                                  refracted_weight, point.level + 1});
-    }
+    if ((kFeatures.special_optics || kFeatures.media) && material.special_optics)
+      branches_at_limit += spawn_specially(point);
+    else
+      branches_at_limit += spawn_children(point, plain_branches(point.shading), kNoMedia, kNoMedia);
   }
   statistics.branches_at_depth_limit += branches_at_limit;
+}
+
+/// Out of the way of what most scenes are made of.
+[[gnu::noinline]] unsigned SampleTracer::State::spawn_specially(const BatchPoint& point) {
+  if (!tracks_media()) return spawn_children(point, branches(point.shading), kNoMedia, kNoMedia);
+  const MediaBoundary& boundary = boundaries[static_cast<std::size_t>(&point - points.data())];
+  return spawn_children(point, branches_between(point.shading, boundary.relative_index), boundary.before,
+                        boundary.after);
+}
+
+/// `before`, `after`: the media that the reflected and the refracted ray are in. Returns how many branches the tree's
+/// depth ended.
+[[gnu::always_inline]] inline unsigned SampleTracer::State::spawn_children(const BatchPoint& point,
+                                                                           const Branches& children, MediaId before,
+                                                                           MediaId after) {
+  const Rgb reflected_weight = point.weight * children.reflected_weight;
+  const Rgb refracted_weight = point.weight * children.refracted_weight;
+  const bool reflects = !is_black(reflected_weight), refracts = !is_black(refracted_weight);
+  const int level = static_cast<int>(point.level);
+  if (level >= settings.depth) return unsigned(reflects) + unsigned(refracts);
+  const Rgb below = scene.bound(settings.depth - level - 1);
+  const Rgb reflected_bound = reflected_weight * below, refracted_bound = refracted_weight * below;
+  const Shares shares = divided_allowance(point.allowance, max_channel(reflected_bound), max_channel(refracted_bound));
+  const SurfacePoint& surface = point.shading.surface;
+  if (reflects) {
+    if (shares.cuts_reflected)
+      cut(point.sample, reflected_bound);
+    else
+      reflected_rays.push_back({offset_origin(surface, surface.geometric_normal), shares.reflected, children.reflected,
+                                point.sample, before, reflected_weight, point.level + 1});
+  }
+  if (refracts) {
+    if (shares.cuts_refracted)
+      cut(point.sample, refracted_bound);
+    else
+      refracted_rays.push_back({offset_origin(surface, -surface.geometric_normal), shares.refracted, children.refracted,
+                                point.sample, after, refracted_weight, point.level + 1});
+  }
+  return 0;
 }
 
 void SampleTracer::State::cut(std::uint32_t sample, const Rgb& bound) {

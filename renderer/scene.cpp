@@ -290,6 +290,8 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
     scene.transparent_shadows |= render.shadows && render.transparent_shadows && material.has_transmission;
     scene.tracks_media |= material.has_inside && material.priority != 0;
   }
+  // Where media are tracked no surface is a plain one: one flag serves the tracer's inner loop.
+  for (Material& material : scene.materials) material.special_optics |= scene.tracks_media;
 
   if (scene.description.render.antialias.method == Antialiasing::Method::whitted)
     scene.small_objects =

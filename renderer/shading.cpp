@@ -49,7 +49,7 @@ Branches thin_branches(const ShadingPoint& point, float index) {
 }
 
 [[gnu::noinline]] Branches branches_between(const ShadingPoint& point, float relative_index) {
-  if (point.material->special_optics) return special_branches(point, relative_index);
+  if (point.material->thin || point.material->conductor) return special_branches(point, relative_index);
   return dielectric_branches(point, relative_index, 1 / relative_index);
 }
 

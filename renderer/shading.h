@@ -165,12 +165,17 @@ Branches special_branches(const ShadingPoint& point, float index);
 }
 
 /// The same where the surface separates its material's inside from empty space.
-[[gnu::always_inline]] inline Branches branches(const ShadingPoint& point) {
+[[gnu::always_inline]] inline Branches plain_branches(const ShadingPoint& point) {
   const Material& material = *point.material;
-  if (kFeatures.special_optics && material.special_optics) return special_branches(point, material.index);
   const float relative_index = point.leaving ? material.inverse_index : material.index;
   const float eta = point.leaving ? material.index : material.inverse_index;
   return dielectric_branches(point, relative_index, eta);
+}
+
+/// The same of any material.
+inline Branches branches(const ShadingPoint& point) {
+  if (kFeatures.special_optics && point.material->special_optics) return special_branches(point, point.material->index);
+  return plain_branches(point);
 }
 
 /// The same where it separates media of known indices (media.h): `relative_index` as of dielectric_branches(), for thin
