@@ -35,18 +35,10 @@ struct Row {
   std::vector<Figure> (*measure)(const MeasureContext&);
 };
 inline constexpr Row kRows[] = {
-    {"floor", measure_floor},
-    {"waves", measure_waves},
-    {"threads", measure_threads},
-    {"start", measure_start},
-    {"large", measure_large},
-    {"idle", measure_idle},
-    {"split", measure_time_split},
-    {"loading", measure_loading},
-    {"bench", measure_intersection_overhead},
-    {"instances", measure_instances},
-    {"types", measure_types},
-    {"povray", measure_povray},
+    {"floor", measure_floor},         {"waves", measure_waves},     {"threads", measure_threads},
+    {"start", measure_start},         {"large", measure_large},     {"idle", measure_idle},
+    {"split", measure_time_split},    {"loading", measure_loading}, {"bench", measure_intersection_overhead},
+    {"instances", measure_instances}, {"types", measure_types},     {"povray", measure_povray},
 };
 
 /// What `large` compares with, measured in a process of its own (see large.cpp): generates the terrain, builds over it

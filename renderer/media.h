@@ -14,8 +14,8 @@
 
 namespace raytree {
 
-/// What a ray can be inside of: a shape, or one of a group's in one instance; where a mesh has several materials, one of
-/// them.
+/// What a ray can be inside of: a shape, or one of a group's in one instance; where a mesh has several materials, one
+/// of them.
 struct Solid {
   std::uint32_t object = 0;  ///< see FirstHit::object, less one
   ShapeId shape = 0;

@@ -13,7 +13,9 @@ namespace {
 /// plane only once; so where one of the two points lies on the other's plane, up to the clearances that the ray was
 /// moved by, the crossing is the same.
 bool is_same_crossing(const ShadowPath& path, const Hit& hit, bool leaving, const SurfacePoint& point) {
-  if (hit.geometry != path.geometry || hit.instance != path.instance || leaving != path.leaving || hit.geometry < kFirstMeshGeometry) return false;
+  if (hit.geometry != path.geometry || hit.instance != path.instance || leaving != path.leaving ||
+      hit.geometry < kFirstMeshGeometry)
+    return false;
   const Vec3f between = point.position - path.position;
   return std::min(std::abs(between.dot(point.geometric_normal)), std::abs(between.dot(path.normal))) <=
          2 * (path.clearance + point.clearance);

@@ -39,7 +39,7 @@ struct ImageRectangle {
 struct SmallObject {
   std::vector<Vec2d> outline;  ///< convex, counter-clockwise as x and y have it, pixels
   ImageRectangle box;          ///< the narrowest that holds the outline
-  std::uint32_t shape = 0;  ///< index among the scene's objects: of a shape, or Instance::object
+  std::uint32_t shape = 0;     ///< index among the scene's objects: of a shape, or Instance::object
 
   double width() const { return 2 * box.half_width; }
 };
