@@ -46,6 +46,7 @@ struct Material {
   bool thin = false;              ///< a sheet without an inside
   bool has_inside = false;        ///< transmits and is not thin
   bool absorbs = false;           ///< has an inside that is not clear
+  bool takes_on_the_way = false;  ///< absorbs, or the scene tracks media: what lies before a hit matters
   bool tabled_highlight = false;  ///< W by highlight_table
   int priority = 0;               ///< among overlapping media
   Rgb absorption;                 ///< a of exp(-a t) inside

@@ -290,6 +290,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
     scene.transparent_shadows |= render.shadows && render.transparent_shadows && material.has_transmission;
     scene.tracks_media |= material.has_inside && material.priority != 0;
   }
+  for (Material& material : scene.materials) material.takes_on_the_way = material.absorbs || scene.tracks_media;
   // Where media are tracked no surface is a plain one: one flag serves the tracer's inner loop.
   for (Material& material : scene.materials) material.special_optics |= scene.tracks_media;
 
