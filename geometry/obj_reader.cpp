@@ -381,7 +381,7 @@ class ObjParser {
                              names_changed = true;
                              break;
                            case Statement::library:
-                             if (found.libraries.size() < kMaxLibraries)
+                             if (found.libraries.size() < 16 * kMaxLibraries)  // names may repeat
                                found.libraries.push_back(source);
                              else
                                found.libraries_dropped.add(source);

@@ -113,7 +113,9 @@ class MtlParser {
     if (word.empty() || word[0] == '#') return;
     if (word == "newmtl") {
       p = skip_blanks(p, end);
-      constexpr std::ptrdiff_t kMaxName = 255;  // as the OBJ reader cuts the names that refer to these
+      constexpr std::ptrdiff_t kMaxName = 255;         // as the OBJ reader cuts the names that refer to these
+      constexpr std::size_t kMostMaterials = 1 << 16;  // each takes many times the memory of its few letters
+      if (materials_.size() == kMostMaterials) fail("more than 65536 materials in one library");
       materials_.push_back({});
       materials_.back().name.assign(p, std::min(end - p, kMaxName) + p);
       return;

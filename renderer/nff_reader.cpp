@@ -1,6 +1,8 @@
 #include "renderer/nff_reader.h"
 
+#include <algorithm>
 #include <cmath>
+#include <deque>
 #include <filesystem>
 #include <numbers>
 #include <optional>
@@ -74,13 +76,36 @@ class WordReader {
   std::int64_t line_ = 1;
 };
 
+/// Spheres and cones as the file has them: far smaller than the shapes that are made of them once the whole file is
+/// read, so that a damaged file of tiny parts takes little memory.
+struct Sphere {
+  Vec3d center;
+  double radius;
+  std::uint32_t fill, line;  ///< fills before it; where it stands
+};
+struct CutCone {
+  Vec3d base, apex;
+  double base_radius, apex_radius;
+  std::uint32_t fill, line;
+};
+
 /// Polygons that follow each other under one fill, as one mesh.
 struct PolygonRun {
-  std::vector<Vec3d> positions, normals;
-  std::vector<std::uint32_t> sizes;
+  std::deque<Vec3d> positions, normals;  ///< which grow without a copy
+  std::deque<std::uint32_t> sizes;
   std::int64_t line = 0;
+  std::uint32_t fill = 0;
   bool patches = false;  ///< with normals
 };
+struct Polygons {
+  const char* noun;
+  std::uint32_t fill;
+  std::int64_t line;
+  MeshShape mesh;
+};
+
+/// Of lights, and of fills: each takes many times the memory of its few letters.
+constexpr std::size_t kMostNames = 1 << 16;
 
 class NffParser {
  public:
@@ -99,6 +124,7 @@ class NffParser {
       read_entity(entity);
     }
     finish_polygons();
+    make_shapes();
     if (scene_.cameras.empty())
       throw Error(ErrorKind::bad_input, {name_, 0, {}},
                   "the file has no viewpoint (v, from, at, up, angle, hither, "
@@ -192,6 +218,7 @@ class NffParser {
   }
 
   void read_light() {
+    if (scene_.lights.size() == kMostNames) words_.fail("more than 65536 lights");
     LightDescription light;
     light.name = "light " + std::to_string(scene_.lights.size() + 1);
     PointLight point;
@@ -210,6 +237,7 @@ class NffParser {
   }
 
   void read_fill() {
+    if (scene_.materials.size() == kMostNames) words_.fail("more than 65536 fills");
     MaterialDescription material;
     material.name = "fill " + std::to_string(scene_.materials.size() + 1);
     const Rgb fill = color("the fill's color");
@@ -230,29 +258,21 @@ class NffParser {
     scene_.materials.push_back(std::move(material));
   }
 
-  ShapeDescription new_shape(const char* noun, std::int64_t line) {
-    ShapeDescription shape;
-    shape.name = std::string(noun) + " " + std::to_string(scene_.shapes.size() + 1);
-    if (!scene_.materials.empty()) shape.material = scene_.materials.back().name;
-    shape.where = {name_, line, {}};
-    return shape;
-  }
+  std::uint32_t fills() const { return static_cast<std::uint32_t>(scene_.materials.size()); }
+  std::uint32_t line() const { return static_cast<std::uint32_t>(words_.line()); }
 
   void read_sphere() {
-    ShapeDescription shape = new_shape("sphere", words_.line());
-    SphereShape sphere;
+    Sphere sphere{{}, 0, fills(), line()};
     sphere.center = words_.vector("the sphere's center");
     sphere.radius = words_.number("the sphere's radius");
     if (sphere.radius == 0) words_.fail("a sphere needs a radius that is not 0");
     if (sphere.radius < 0) count(inside_out_);
     sphere.radius = std::abs(sphere.radius);
-    shape.kind = sphere;
-    scene_.shapes.push_back(std::move(shape));
+    spheres_.push_back(sphere);
   }
 
   void read_cone() {
-    ShapeDescription shape = new_shape("cone", words_.line());
-    ConeShape cone;
+    CutCone cone{{}, {}, 0, 0, fills(), line()};
     cone.base = words_.vector("the cone's base");
     cone.base_radius = words_.number("the cone's base radius");
     cone.apex = words_.vector("the cone's apex");
@@ -260,12 +280,25 @@ class NffParser {
     if (cone.base_radius < 0 || cone.apex_radius < 0) count(inside_out_);
     cone.base_radius = std::abs(cone.base_radius);
     cone.apex_radius = std::abs(cone.apex_radius);
-    if (cone.base == cone.apex || (cone.base_radius == 0 && cone.apex_radius == 0)) {
+    if (cone.base == cone.apex || (cone.base_radius == 0 && cone.apex_radius == 0))
       count(degenerate_);
-      return;
-    }
-    shape.kind = cone;
-    scene_.shapes.push_back(std::move(shape));
+    else
+      cones_.push_back(cone);
+  }
+
+  void add_shape(const char* noun, std::uint32_t fill, std::int64_t line, ShapeKind kind) {
+    ShapeDescription& shape = scene_.shapes.emplace_back();
+    shape.name = std::string(noun) + " " + std::to_string(scene_.shapes.size());
+    if (fill > 0) shape.material = scene_.materials[fill - 1].name;
+    shape.where = {name_, line, {}};
+    shape.kind = std::move(kind);
+  }
+
+  void make_shapes() {
+    for (const Sphere& s : spheres_) add_shape("sphere", s.fill, s.line, SphereShape{s.center, s.radius});
+    for (const CutCone& c : cones_)
+      add_shape("cone", c.fill, c.line, ConeShape{c.base, c.apex, c.base_radius, c.apex_radius});
+    for (Polygons& p : polygons_) add_shape(p.noun, p.fill, p.line, std::move(p.mesh));
   }
 
   void read_polygon(bool patch) {
@@ -274,6 +307,7 @@ class NffParser {
       run_.emplace();
       run_->patches = patch;
       run_->line = words_.line();
+      run_->fill = fills();
     }
     const double corners = words_.number("the number of corners");
     if (corners != std::floor(corners) || corners < 0 || corners > 0xffffffffu)
@@ -310,12 +344,10 @@ class NffParser {
         std::all_of(run.sizes.begin(), run.sizes.end(), [](std::uint32_t size) { return size == 3; });
     if (!triangles) mesh->face_sizes.assign(run.sizes.begin(), run.sizes.end());
     mesh->normals.assign(run.normals.begin(), run.normals.end());
-    ShapeDescription shape = new_shape(run.patches ? "patches" : "polygons", run.line);
     MeshShape kind;
     kind.normals = run.patches ? NormalSource::file : NormalSource::flat;
     kind.mesh = std::move(mesh);
-    shape.kind = std::move(kind);
-    scene_.shapes.push_back(std::move(shape));
+    polygons_.push_back({run.patches ? "patches" : "polygons", run.fill, run.line, std::move(kind)});
   }
 
   WordReader words_;
@@ -323,6 +355,9 @@ class NffParser {
   Warnings& warnings_;
   SceneDescription scene_;
   std::vector<bool> has_color_;  ///< [light]
+  std::deque<Sphere> spheres_;
+  std::deque<CutCone> cones_;
+  std::deque<Polygons> polygons_;
   std::optional<PolygonRun> run_;
   using Count = std::pair<std::int64_t, std::int64_t>;  ///< line of the first, how many
   mutable Count skipped_, inside_out_, degenerate_;

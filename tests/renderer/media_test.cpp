@@ -10,6 +10,14 @@
 namespace raytree {
 namespace {
 
+/// A shape of the scene, which uses no instance.
+Solid solid(const Scene& scene, ShapeId shape) { return {shape, shape, scene.shape_materials[shape]}; }
+std::vector<Solid> solids(const Scene& scene, std::initializer_list<ShapeId> shapes) {
+  std::vector<Solid> result;
+  for (const ShapeId shape : shapes) result.push_back(solid(scene, shape));
+  return result;
+}
+
 using namespace test;
 
 constexpr double kFloatError = 0x1p-20;
@@ -189,7 +197,7 @@ TEST(Media, AnEyeInLiquidInGlassKnowsWhereItIs) {
                     shape(SphereShape{{0, 0, 0}, 0.9}, "hollow")};
     const Scene ready = prepared(scene);
     const Vec3f eye(Vec3d(0, 0, 0.5) - ready.shapes->origin);
-    EXPECT_EQ(shapes_around(ready, eye, {1, 0, 0}), (std::vector<ShapeId>{0, 1, 2}));
+    EXPECT_EQ(solids_around(ready, eye, {1, 0, 0}), solids(ready, {0, 1, 2}));
     const RenderResult result = render(ready, {});
     int compared = 0;
     for (int y = 0; y < 32; ++y)
@@ -227,11 +235,10 @@ TEST(Media, HalfSpacesAreJudgedByTheirSide) {
   scene.cameras[0].target = {0, -2.5, 0};
   scene.background = ConstantBackground{Rgb(1)};
   const Scene ready = prepared(scene);
-  EXPECT_EQ(shapes_around(ready, Vec3f(Vec3d(0, -2, 0.5) - ready.shapes->origin), Vec3f(0, -1, 0)),
-            (std::vector<ShapeId>{0, 1}));
-  EXPECT_EQ(shapes_around(ready, Vec3f(Vec3d(0, -4, 0.5) - ready.shapes->origin), Vec3f(0, -1, 0)),
-            (std::vector<ShapeId>{0}));
-  EXPECT_TRUE(shapes_around(ready, Vec3f(Vec3d(0, 1, 0.5) - ready.shapes->origin), Vec3f(0, -1, 0)).empty());
+  EXPECT_EQ(solids_around(ready, Vec3f(Vec3d(0, -2, 0.5) - ready.shapes->origin), Vec3f(0, -1, 0)),
+            solids(ready, {0, 1}));
+  EXPECT_EQ(solids_around(ready, Vec3f(Vec3d(0, -4, 0.5) - ready.shapes->origin), Vec3f(0, -1, 0)), solids(ready, {0}));
+  EXPECT_TRUE(solids_around(ready, Vec3f(Vec3d(0, 1, 0.5) - ready.shapes->origin), Vec3f(0, -1, 0)).empty());
   // What leaves the scene through endless water arrives where nothing absorbs, and nowhere else.
   expect_color(color_at(render(ready, {}).film, 1, 1), Rgb(1, 0, 0), kFloatError);
 }
@@ -243,24 +250,24 @@ TEST(Media, TablesKeepTheirSets) {
     scene.shapes.push_back(shape(SphereShape{{0, 0, 0}, 1}, name));
   const Scene ready = prepared(scene);
   MediaTable table(ready);
-  const MediaBoundary into_a = table.boundary(kNoMedia, 0, false);
+  const MediaBoundary into_a = table.boundary(kNoMedia, solid(ready, 0), false);
   EXPECT_FALSE(into_a.passes);
   EXPECT_FLOAT_EQ(into_a.relative_index, 1.5f);
-  const MediaBoundary into_b = table.boundary(into_a.after, 1, false);
+  const MediaBoundary into_b = table.boundary(into_a.after, solid(ready, 1), false);
   EXPECT_FALSE(into_b.passes) << "of equal priorities the one entered last is there";
   EXPECT_FLOAT_EQ(into_b.relative_index, 1.3f / 1.5f);
-  const MediaBoundary into_c = table.boundary(into_b.after, 2, false);
+  const MediaBoundary into_c = table.boundary(into_b.after, solid(ready, 2), false);
   EXPECT_FLOAT_EQ(into_c.relative_index, 2 / 1.3f);
-  EXPECT_TRUE(table.boundary(into_c.after, 1, true).passes) << "b ends within c";
-  EXPECT_TRUE(table.boundary(into_a.after, 3, false).passes) << "a within a";
-  EXPECT_TRUE(table.boundary(into_a.after, 0, false).passes) << "entered twice";
-  EXPECT_EQ(table.boundary(into_a.after, 0, false).after, into_a.after);
-  const MediaBoundary out = table.boundary(into_a.after, 0, true);
+  EXPECT_TRUE(table.boundary(into_c.after, solid(ready, 1), true).passes) << "b ends within c";
+  EXPECT_TRUE(table.boundary(into_a.after, solid(ready, 3), false).passes) << "a within a";
+  EXPECT_TRUE(table.boundary(into_a.after, solid(ready, 0), false).passes) << "entered twice";
+  EXPECT_EQ(table.boundary(into_a.after, solid(ready, 0), false).after, into_a.after);
+  const MediaBoundary out = table.boundary(into_a.after, solid(ready, 0), true);
   EXPECT_EQ(out.after, kNoMedia);
   EXPECT_FLOAT_EQ(out.relative_index, 1 / 1.5f);
   // A ray that never entered was inside all along.
-  EXPECT_EQ(table.boundary(kNoMedia, 0, true).before, into_a.after);
-  const MediaBoundary stone = table.boundary(into_a.after, 4, false);
+  EXPECT_EQ(table.boundary(kNoMedia, solid(ready, 0), true).before, into_a.after);
+  const MediaBoundary stone = table.boundary(into_a.after, solid(ready, 4), false);
   EXPECT_FALSE(stone.passes);
   EXPECT_EQ(stone.after, into_a.after);
   EXPECT_EQ(table.medium(into_c.after), &ready.materials[2]);
@@ -276,21 +283,21 @@ TEST(Media, ATableThatIsFullLeavesRaysInTheSetTheyHave) {
   std::size_t refused = 0;
   MediaId last = kNoMedia;
   for (std::uint32_t mask = 0; mask < 1u << 17; ++mask) {
-    std::vector<ShapeId> shapes;
+    std::vector<Solid> set;
     for (ShapeId i = 0; i < 17; ++i)
-      if ((mask >> i & 1) != 0) shapes.push_back(i);
-    const MediaId id = table.set_of(shapes);
+      if ((mask >> i & 1) != 0) set.push_back(solid(ready, i));
+    const MediaId id = table.set_of(set);
     refused += id == kNoMedia && mask != 0;
     if (id != kNoMedia) last = id;
   }
   EXPECT_EQ(refused, (1u << 17) - (1u << 16));
   EXPECT_EQ(last, 65535);
-  const MediaBoundary into = table.boundary(last, 17, false);
+  const MediaBoundary into = table.boundary(last, solid(ready, 17), false);
   EXPECT_EQ(into.before, last);
   EXPECT_EQ(into.after, last);
   EXPECT_TRUE(into.passes);
   table.clear();
-  EXPECT_EQ(table.boundary(kNoMedia, 17, false).after, 1);
+  EXPECT_EQ(table.boundary(kNoMedia, solid(ready, 17), false).after, 1);
 }
 
 }  // namespace
