@@ -4,7 +4,6 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "renderer/json_document.h"
 #include "renderer/suggestion.h"
 
 namespace raytree {

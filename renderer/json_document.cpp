@@ -10,6 +10,7 @@
 
 #include "geometry/error.h"
 #include "renderer/json_writer.h"
+#include "renderer/suggestion.h"
 
 namespace raytree {
 namespace {
@@ -192,27 +193,6 @@ JsonDocument JsonDocument::of_string(std::string_view text) {
   node.line = 0;
   node.span = {0, static_cast<std::uint32_t>(text.size())};
   return document;
-}
-
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kLongest = 60;
-  std::size_t length = std::min(text.size(), kLongest);
-  // Cut between characters: a UTF-8 continuation byte starts with the bits 10.
-  while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;
-  std::string out = "\"";
-  for (const char c : text.substr(0, length)) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-      constexpr std::string_view kDigits = "0123456789abcdef";
-      const auto byte = static_cast<unsigned char>(c);
-      out += "\\x";
-      out += kDigits[byte >> 4];
-      out += kDigits[byte & 15];
-    } else {
-      if (c == '"' || c == '\\') out += '\\';
-      out += c;
-    }
-  }
-  return out + (length < text.size() ? "...\"" : "\"");
 }
 
 std::string description_of(JsonValue value) {

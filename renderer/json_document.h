@@ -96,9 +96,6 @@ class JsonDocument {
 /// What a message calls a value: `"glass"`, `12.5`, `an array of 2`, `an object`, `true`, `null`.
 std::string description_of(JsonValue value);
 
-/// `text` in quotes, control characters escaped, at most about 60 characters of it.
-std::string in_quotes(std::string_view text);
-
 // --- details ------------------------------------------------------------------------------------------------
 
 inline JsonKind JsonValue::kind() const { return document_->nodes_[index_].kind; }

@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "renderer/json_document.h"
 #include "renderer/mtl_reader.h"
+#include "renderer/suggestion.h"
 
 namespace raytree {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "geometry/mesh_file.h"
 #include "renderer/mesh_materials.h"
+#include "renderer/suggestion.h"
 
 namespace raytree {
 namespace {
@@ -132,7 +133,12 @@ Vec3d towards(const ViewAxes& axes, double right, double up, double back) {
 }  // namespace
 
 SceneDescription mesh_scene(const std::string& path, Warnings& warnings, const ImageDescription& image) {
-  return mesh_scene(std::make_shared<PolygonMesh>(read_mesh_file(path, warnings)), path, image);
+  auto mesh = std::make_shared<PolygonMesh>(read_mesh_file(path, warnings));
+  if (!mesh->material_libraries.empty() && !has_material_library(*mesh, path))
+    warnings.push_back({{path, 0, {}},
+                        "material library " + in_quotes(mesh->material_libraries.front()) + " is not there",
+                        static_cast<std::int64_t>(mesh->material_libraries.size())});
+  return mesh_scene(std::move(mesh), path, image);
 }
 
 SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string& name, const ImageDescription& image) {

@@ -8,7 +8,7 @@
 
 #include "geometry/mapped_file.h"
 #include "geometry/text_scanning.h"
-#include "renderer/json_document.h"
+#include "renderer/suggestion.h"
 
 namespace raytree {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "geometry/mapped_file.h"
 #include "geometry/text_scanning.h"
-#include "renderer/json_document.h"
 #include "renderer/scene_fields.h"
+#include "renderer/suggestion.h"
 
 namespace raytree {
 namespace {

@@ -270,7 +270,7 @@ void SampleTracer::State::add_children(RayKind kind, std::vector<PendingRay>& ch
 
 void SampleTracer::State::collect_hits(bool eye) {
   const ShapeSet& shapes = *scene.shapes;
-  const bool media_matter = tracks_media(), ways_matter = media_matter || tracks_paths();
+  const bool media_matter = tracks_media();
   const SampleWindow window = eye ? eye_window : SampleWindow();
   hit_count = 0;
   for (std::size_t i = 0; i < rays.size; ++i) {
@@ -293,22 +293,25 @@ void SampleTracer::State::collect_hits(bool eye) {
     const PendingRay& ray = contexts[i];
     const Hit hit = hits[i];
     BatchPoint& point = points[count];
-    std::uint32_t object;
+    std::uint32_t object, material_index;
     if (kFeatures.instances && instanced && hit.instance != kNoInstance) {
       object = shapes.instances[hit.instance].object;
+      material_index = scene.material_at(hit);
       find_instance_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     } else {
       object = shapes.shape_of(hit.geometry, hit.primitive);
+      material_index = scene.own_material(shapes, object, hit);
       find_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     }
-    const std::uint32_t material_index = scene.material_at(hit);
     const Material& material = scene.materials[material_index];
     complete_shading_point(point.shading, ray.direction, material, window);
     point.weight = ray.weight;
     point.allowance = ray.allowance;
     point.sample = ray.sample;
     point.level = ray.level;
-    if ((ways_matter || (kFeatures.absorption && material.absorbs)) && passes(count, ray, hit)) continue;
+    if ((kFeatures.media || kFeatures.absorption || kFeatures.rough_surfaces) && material.takes_on_the_way &&
+        passes(count, ray, hit))
+      continue;
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && ray.level > 1)
       point.weight *=
           segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);

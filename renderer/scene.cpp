@@ -298,8 +298,12 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
     scene.tracks_media |= material.has_inside && material.priority != 0;
     scene.rough_surfaces |= material.rough;
   }
-  // Where media or paths are tracked no surface is a plain one: one flag serves the tracer's inner loop.
-  for (Material& material : scene.materials) material.special_optics |= scene.tracks_media || scene.rough_surfaces;
+  // Where media or paths are tracked no surface is a plain one: one flag each serves the tracer's inner loops.
+  const bool tracked = scene.tracks_media || scene.rough_surfaces;
+  for (Material& material : scene.materials) {
+    material.takes_on_the_way = material.absorbs || tracked;
+    material.special_optics |= tracked;
+  }
 
   if (scene.description.render.antialias.method == Antialiasing::Method::whitted)
     scene.small_objects =

@@ -111,7 +111,7 @@ class Scene {
     return own_material(group, group.bounded_shape_of(hit.geometry, hit.primitive), hit);
   }
 
- private:
+  /// The same of a hit on `shape` of `list`, where no instance says otherwise.
   std::uint32_t own_material(const BoundedShapes& list, ShapeId shape, const Hit& hit) const {
     const std::uint32_t tag = list.tag_of(hit.geometry, hit.primitive);
     return tag != kNoTag ? tag : shape_materials[shape];

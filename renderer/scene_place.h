@@ -8,6 +8,7 @@
 
 #include "geometry/error.h"
 #include "renderer/json_document.h"
+#include "renderer/suggestion.h"
 
 namespace raytree::reading {
 

@@ -34,6 +34,27 @@ bool is_beginning(std::string_view word, std::string_view name) {
 
 }  // namespace
 
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  std::size_t length = std::min(text.size(), kLongest);
+  // Cut between characters: a UTF-8 continuation byte starts with the bits 10.
+  while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;
+  std::string out = "\"";
+  for (const char c : text.substr(0, length)) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+      constexpr std::string_view kDigits = "0123456789abcdef";
+      const auto byte = static_cast<unsigned char>(c);
+      out += "\\x";
+      out += kDigits[byte >> 4];
+      out += kDigits[byte & 15];
+    } else {
+      if (c == '"' || c == '\\') out += '\\';
+      out += c;
+    }
+  }
+  return out + (length < text.size() ? "...\"" : "\"");
+}
+
 std::optional<std::string> closest_name(std::string_view word, const std::vector<std::string>& names) {
   constexpr std::size_t kLongestWord = 100;  // a longer one is no misspelling, and the distance is quadratic
   if (word.empty() || word.size() > kLongestWord) return std::nullopt;

@@ -1,4 +1,5 @@
-// What would have been right: the list of known names, and the one that a misspelled word most likely meant.
+// Words of messages: what stands there, in quotes; and what would have been right, the list of known names and the one
+// that a misspelled word most likely meant.
 #pragma once
 
 #include <optional>
@@ -7,6 +8,9 @@
 #include <vector>
 
 namespace raytree {
+
+/// `text` in quotes, control characters escaped, at most about 60 characters of it.
+std::string in_quotes(std::string_view text);
 
 /// The name nearest to `word` by swapped, missing, wrong and extra letters (case ignored), if it is near enough to be
 /// meant: one error in three letters, at least one.

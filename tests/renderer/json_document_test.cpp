@@ -9,6 +9,7 @@
 
 #include "geometry/error.h"
 #include "renderer/scene_reader.h"
+#include "renderer/suggestion.h"
 #include "tests/test_data.h"
 
 namespace raytree {
