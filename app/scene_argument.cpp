@@ -169,6 +169,11 @@ void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
   command.add_option("--minimum-level", flags.minimum_level, "whitted: how often every pixel is divided")
       ->type_name("N")
       ->group("Tracing");
+  command
+      .add_option("--rough-samples", flags.rough_samples,
+                  "Facets that stand for a rough surface where a way down the tree first meets one")
+      ->type_name("N")
+      ->group("Tracing");
 }
 
 void check_scene_flags(const SceneFlags& flags) {
@@ -188,6 +193,7 @@ void check_scene_flags(const SceneFlags& flags) {
   };
   if (!flags.levels.empty()) level("--levels", flags.levels);
   if (!flags.minimum_level.empty()) level("--minimum-level", flags.minimum_level);
+  if (!flags.rough_samples.empty()) parse_integer("--rough-samples", flags.rough_samples, 1, kMaxRoughSamples);
 }
 
 SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
@@ -202,6 +208,7 @@ SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
   if (!flags.antialias.empty()) scene.render.antialias = parse_antialiasing(flags.antialias);
   if (!flags.threshold.empty()) set_value(scene, "--threshold", "render.adaptive.threshold", flags.threshold);
   if (!flags.levels.empty()) set_value(scene, "--levels", "render.adaptive.levels", flags.levels);
+  if (!flags.rough_samples.empty()) set_value(scene, "--rough-samples", "render.rough_samples", flags.rough_samples);
   if (!flags.minimum_level.empty())
     set_value(scene, "--minimum-level", "render.adaptive.minimum_level", flags.minimum_level);
   if (const AdaptiveSampling& adaptive = scene.render.adaptive; adaptive.minimum_level > adaptive.levels)

@@ -20,7 +20,7 @@ struct SceneFlags {
   std::string size;               ///< WxH
   std::string camera;             ///< name
   std::vector<std::string> sets;  ///< PATH=VALUE
-  std::string depth, cutoff, antialias, threshold, levels, minimum_level;
+  std::string depth, cutoff, antialias, threshold, levels, minimum_level, rough_samples;
 };
 
 /// Adds --size, --camera and --set; with `tracing` also --depth, --cutoff, --antialias and what

@@ -29,6 +29,9 @@ class Tracer {
       : scene_(scene), intersector_(intersector), settings_(scene.description.render) {
     for (const Material& material : scene.materials) wants_texture_ |= material.needs_texture;
     if (scene.tracks_media) media_.emplace(scene);
+    if (scene.rough_surfaces)
+      throw Error(ErrorKind::bad_input, {scene.description.name, 0, "materials"},
+                  "the recursive tracer knows no rough surfaces; set their roughness to 0");
   }
 
   std::array<std::uint64_t, kRayKindCount> rays{};

@@ -27,6 +27,7 @@ struct Features {
   bool absorption = kOptionalFeatures;
   bool special_optics = kOptionalFeatures;  ///< thin sheets and conductors
   bool media = kOptionalFeatures;           ///< overlapping media by priority
+  bool rough_surfaces = kOptionalFeatures;  ///< perturbed normals
 };
 inline constexpr Features kFeatures;
 

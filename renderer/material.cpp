@@ -53,6 +53,9 @@ Material make_material(const MaterialDescription& description, bool fresnel, con
   material.thin = description.thin && material.has_transmission;
   material.special_optics = material.conductor || material.thin;
   material.has_reflection |= material.conductor;  // (1 - cos)^5 is left of a black k_s
+  material.roughness = static_cast<float>(description.roughness);
+  material.rough =
+      kFeatures.rough_surfaces && material.roughness > 0 && (material.has_reflection || material.has_transmission);
   material.fresnel = fresnel && !material.conductor;
   material.has_inside = material.has_transmission && !material.thin;
   material.absorption = description.absorption;

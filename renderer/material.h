@@ -41,13 +41,15 @@ struct Material {
   bool fresnel = false;            ///< k_s F and k_t (1 - F)
   bool needs_texture = false;      ///< some pattern looks at texture coordinates
 
-  bool special_optics = false;    ///< thin, a conductor, or in a scene that tracks media
+  bool special_optics = false;    ///< thin, a conductor, or in a scene that tracks media or has rough surfaces
   bool conductor = false;         ///< k_s rises to 1 by Schlick's formula
   bool thin = false;              ///< a sheet without an inside
   bool has_inside = false;        ///< transmits and is not thin
   bool absorbs = false;           ///< has an inside that is not clear
-  bool takes_on_the_way = false;  ///< absorbs, or the scene tracks media: what lies before a hit matters
+  bool takes_on_the_way = false;  ///< absorbs, or the scene tracks media or has rough surfaces: see passes()
   bool tabled_highlight = false;  ///< W by highlight_table
+  bool rough = false;             ///< has children, and facets that perturb them
+  float roughness = 0;            ///< standard deviation of the facets' slopes
   int priority = 0;               ///< among overlapping media
   Rgb absorption;                 ///< a of exp(-a t) inside
   Rgb shadow_transmission;        ///< of one crossing by a shadow ray: k_t, at most 1

@@ -9,6 +9,7 @@
 
 #include "renderer/features.h"
 #include "renderer/media.h"
+#include "renderer/rough_surface.h"
 #include "renderer/shading.h"
 #include "renderer/shadow_path.h"
 
@@ -41,6 +42,14 @@ struct BatchPoint {
   float allowance;
   std::uint16_t sample;
   std::uint32_t level;
+};
+
+/// What a batch spawns, before it joins the pending rays: by kind, so that neighbours in a packet run much the same
+/// way. With the rays' paths where some surface is rough.
+struct NewRays {
+  std::vector<PendingRay> reflected, refracted;
+  std::vector<PendingRay> passed;  ///< that met a surface which separates nothing
+  std::vector<TreePath> reflected_paths, refracted_paths, passed_paths;
 };
 
 /// What the two children of a hit may cut off below them, and which of them is itself cut.
@@ -81,9 +90,15 @@ struct SampleTracer::State {
         eye_rays(kBatchSize),
         hit_rays(kBatchSize),
         points(kBatchSize) {
-    pending.reserve(4 * kBatchSize);
-    reflected_rays.reserve(kBatchSize);
-    refracted_rays.reserve(kBatchSize);
+    const std::size_t split_batches = tracks_paths() ? 2 * static_cast<std::size_t>(settings.rough_samples) : 0;
+    pending.reserve((4 + split_batches) * kBatchSize);
+    new_rays.reflected.reserve(kBatchSize);
+    new_rays.refracted.reserve(kBatchSize);
+    if (tracks_paths()) {
+      pending_paths.reserve(pending.capacity());
+      eye_paths.resize(kBatchSize);
+      point_paths.resize(kBatchSize);
+    }
     for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
     instanced = !scene.shapes->instances.empty();
     if (follows_shadows()) shadow_paths.emplace(scene, kBatchSize);
@@ -102,6 +117,7 @@ struct SampleTracer::State {
   void begin_sample(std::size_t i, const Vec2f& position);
   bool tracks_media() const { return kFeatures.media && scene.tracks_media; }
   bool follows_shadows() const { return kFeatures.transparent_shadows && scene.transparent_shadows; }
+  bool tracks_paths() const { return kFeatures.rough_surfaces && scene.rough_surfaces; }
   bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
   void trace_batch(Coherence coherence, bool eye);
   void collect_hits(bool eye);
@@ -114,9 +130,12 @@ struct SampleTracer::State {
   void follow_shadows(std::size_t count);
   void spawn();
   unsigned spawn_specially(const BatchPoint& point);
-  unsigned spawn_children(const BatchPoint& point, const Branches& children, MediaId before, MediaId after);
+  unsigned spawn_on_path(const BatchPoint& point, float relative_index, MediaId before, MediaId after);
+  unsigned spawn_children(const BatchPoint& point, const Branches& children, float& allowance, MediaId before,
+                          MediaId after, NewRays& out);
   void cut(std::uint32_t sample, const Rgb& bound);
   void add_children(RayKind kind, std::vector<PendingRay>& children);
+  void add_rays_on_paths();
   void record_first_hit(const BatchPoint& point, std::uint32_t object, std::uint32_t material);
 
   const Scene& scene;
@@ -140,9 +159,13 @@ struct SampleTracer::State {
   std::size_t point_count = 0;      ///< hit_count, less the surfaces that separate nothing
   std::vector<BatchPoint> points;   ///< hits of the batch under way
   std::vector<PendingRay> pending;  ///< the newest rays are traced first
-  /// What the batch under way spawns, before it joins the pending rays: apart, so that neighbours in a packet run much
-  /// the same way.
-  std::vector<PendingRay> reflected_rays, refracted_rays;
+  NewRays new_rays;                 ///< of the batch under way
+
+  // Where surfaces are rough, paths beside rays:
+  std::vector<TreePath> pending_paths, eye_paths;
+  const TreePath* context_paths = nullptr;  ///< [rays.size] of the batch under way
+  std::vector<TreePath> point_paths;        ///< [point_count]
+  NewRays split_rays;                       ///< that have a rough bounce behind them; these lie on top of new_rays
 
   bool wants_texture = false;
   SampleWindow eye_window;  ///< of the chunk's eye rays
@@ -157,7 +180,6 @@ struct SampleTracer::State {
   bool knows_eye_solids = false;
   std::vector<MediaBoundary> boundaries;  ///< [point_count] what each point separates
   std::vector<MediaId> shadow_media;      ///< that shadow rays start in
-  std::vector<PendingRay> passed_rays;    ///< that met a surface which separates nothing
 };
 
 void SampleTracer::State::begin_sample(std::size_t i, const Vec2f& position) {
@@ -177,16 +199,20 @@ bool SampleTracer::State::trace(std::span<const Vec2f> positions, float spacing)
   std::fill(results.truncation.begin(), results.truncation.end(), Rgb());
   std::fill(results.ray_counts.begin(), results.ray_counts.end(), 1u);
   std::fill(results.first_hits.begin(), results.first_hits.end(), FirstHit());
+  if (tracks_paths())
+    for (std::size_t i = 0; i < positions.size(); ++i) eye_paths[i] = TreePath::of_eye(positions[i]);
   rays.size = positions.size();
   statistics.rays[static_cast<int>(RayKind::primary)] += positions.size();
   statistics.samples += positions.size();
   statistics.deepest_level = std::max(statistics.deepest_level, 1);
   contexts = eye_rays.data();
+  context_paths = eye_paths.data();
   trace_batch(Coherence::coherent, true);
   while (!pending.empty()) {
     if (stopped()) return false;
     const std::size_t count = std::min(kBatchSize, pending.size());
     contexts = pending.data() + pending.size() - count;
+    if (tracks_paths()) context_paths = pending_paths.data() + pending.size() - count;
     for (std::size_t i = 0; i < count; ++i) {
       const PendingRay& ray = contexts[i];
       rays.set(i, ray.origin, ray.direction, kInfinity);
@@ -207,9 +233,10 @@ void SampleTracer::State::trace_batch(Coherence coherence, bool eye) {
   if (!eye) pending.resize(pending.size() - rays.size);
   add_lights();
   spawn();
-  add_children(RayKind::reflected, reflected_rays);
-  add_children(RayKind::refracted, refracted_rays);
-  if (tracks_media()) add_children(RayKind::refracted, passed_rays);
+  if (tracks_paths()) add_rays_on_paths();
+  add_children(RayKind::reflected, new_rays.reflected);
+  add_children(RayKind::refracted, new_rays.refracted);
+  if (tracks_media()) add_children(RayKind::refracted, new_rays.passed);
   const double shadow_seconds = statistics.intersection_seconds - intersection_before;
   statistics.shading_seconds += seconds_since(hit) - shadow_seconds;
   statistics.intersection_seconds += std::chrono::duration<double>(hit - start).count();
@@ -222,6 +249,23 @@ void SampleTracer::State::add_children(RayKind kind, std::vector<PendingRay>& ch
     statistics.deepest_level = std::max(statistics.deepest_level, static_cast<int>(child.level));
   pending.insert(pending.end(), children.begin(), children.end());
   children.clear();
+}
+
+/// Adds what the batch spawned with its paths, the rays that have split on top of all that have not.
+[[gnu::noinline]] void SampleTracer::State::add_rays_on_paths() {
+  pending_paths.resize(pending.size());  // less the batch's own
+  const auto move_to_pending = [&](std::vector<TreePath>& paths) {
+    pending_paths.insert(pending_paths.end(), paths.begin(), paths.end());
+    paths.clear();
+  };
+  for (NewRays* added : {&new_rays, &split_rays}) {
+    add_children(RayKind::reflected, added->reflected);
+    add_children(RayKind::refracted, added->refracted);
+    add_children(RayKind::refracted, added->passed);
+    move_to_pending(added->reflected_paths);
+    move_to_pending(added->refracted_paths);
+    move_to_pending(added->passed_paths);
+  }
 }
 
 void SampleTracer::State::collect_hits(bool eye) {
@@ -265,7 +309,9 @@ void SampleTracer::State::collect_hits(bool eye) {
     point.allowance = ray.allowance;
     point.sample = ray.sample;
     point.level = ray.level;
-    if ((kFeatures.media || kFeatures.absorption) && material.takes_on_the_way && passes(count, ray, hit)) continue;
+    if ((kFeatures.media || kFeatures.absorption || kFeatures.rough_surfaces) && material.takes_on_the_way &&
+        passes(count, ray, hit))
+      continue;
     if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && ray.level > 1)
       point.weight *=
           segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);
@@ -291,13 +337,16 @@ void SampleTracer::State::collect_hits(bool eye) {
   }
 }
 
-/// Takes what was absorbed on the way to a point, and says what its surface separates. True: nothing; the ray goes on
-/// behind it, at its level.
+/// Takes what was absorbed on the way to a point, notes its path, and says what its surface separates. True: nothing;
+/// the ray goes on behind it, at its level.
 [[gnu::noinline]] bool SampleTracer::State::passes(std::size_t p, const PendingRay& ray, const Hit& hit) {
   BatchPoint& point = points[p];
   const SurfacePoint& surface = point.shading.surface;
+  const TreePath path = tracks_paths() ? context_paths[&ray - contexts] : TreePath();
+  if (tracks_paths()) point_paths[p] = path;
   if (!tracks_media()) {
-    if (point.shading.leaving) point.weight *= transmitted_share(point.shading.material->absorption, surface.distance);
+    if (point.shading.material->absorbs && point.shading.leaving)
+      point.weight *= transmitted_share(point.shading.material->absorption, surface.distance);
     return false;
   }
   MediaBoundary& boundary = boundaries[p];
@@ -305,8 +354,10 @@ void SampleTracer::State::collect_hits(bool eye) {
   point.weight *= media->transmitted(boundary.before, surface.distance);
   if (!boundary.passes) return false;
   if (records.first_hits && ray.level == 1) results.first_hits[ray.sample].distance += surface.distance;
-  passed_rays.push_back({offset_origin(surface, -surface.geometric_normal), ray.allowance, ray.direction, ray.sample,
-                         boundary.after, point.weight, ray.level});
+  NewRays& out = path.is_split ? split_rays : new_rays;
+  if (tracks_paths()) out.passed_paths.push_back(path);
+  out.passed.push_back({offset_origin(surface, -surface.geometric_normal), ray.allowance, ray.direction, ray.sample,
+                        boundary.after, point.weight, ray.level});
   return true;
 }
 
@@ -401,27 +452,67 @@ void SampleTracer::State::spawn() {
   for (const BatchPoint& point : batch_points()) {
     const Material& material = *point.shading.material;
     if (!material.has_reflection && !material.has_transmission) continue;
-    if ((kFeatures.special_optics || kFeatures.media) && material.special_optics)
+    if ((kFeatures.special_optics || kFeatures.media || kFeatures.rough_surfaces) && material.special_optics) {
       branches_at_limit += spawn_specially(point);
-    else
-      branches_at_limit += spawn_children(point, plain_branches(point.shading), kNoMedia, kNoMedia);
+    } else {
+      float allowance = point.allowance;
+      branches_at_limit +=
+          spawn_children(point, plain_branches(point.shading), allowance, kNoMedia, kNoMedia, new_rays);
+    }
   }
   statistics.branches_at_depth_limit += branches_at_limit;
 }
 
 /// Out of the way of what most scenes are made of.
 [[gnu::noinline]] unsigned SampleTracer::State::spawn_specially(const BatchPoint& point) {
-  if (!tracks_media()) return spawn_children(point, branches(point.shading), kNoMedia, kNoMedia);
-  const MediaBoundary& boundary = boundaries[static_cast<std::size_t>(&point - points.data())];
-  return spawn_children(point, branches_between(point.shading, boundary.relative_index), boundary.before,
-                        boundary.after);
+  float allowance = point.allowance;
+  if (tracks_media()) {
+    const MediaBoundary& boundary = boundaries[static_cast<std::size_t>(&point - points.data())];
+    if (tracks_paths()) return spawn_on_path(point, boundary.relative_index, boundary.before, boundary.after);
+    return spawn_children(point, branches_between(point.shading, boundary.relative_index), allowance, boundary.before,
+                          boundary.after, new_rays);
+  }
+  if (tracks_paths()) return spawn_on_path(point, plain_relative_index(point.shading), kNoMedia, kNoMedia);
+  return spawn_children(point, branches(point.shading), allowance, kNoMedia, kNoMedia, new_rays);
 }
 
-/// `before`, `after`: the media that the reflected and the refracted ray are in. Returns how many branches the tree's
-/// depth ended.
+/// In a scene with rough surfaces. The first rough point on a way down the tree is met by rough_samples facets, each of
+/// which has an equal part of the ray's weight and of its allowance, and what one leaves of its part passes to the
+/// others; so what is cut below the ray stays within its allowance. Later ones are met by one facet.
+unsigned SampleTracer::State::spawn_on_path(const BatchPoint& point, float relative_index, MediaId before,
+                                            MediaId after) {
+  const TreePath path = point_paths[static_cast<std::size_t>(&point - points.data())];
+  const bool rough = point.shading.material->rough, splits = rough && !path.is_split;
+  const std::uint32_t samples = static_cast<std::uint32_t>(settings.rough_samples), count = splits ? samples : 1;
+  const float share = 1 / static_cast<float>(count);
+  NewRays& out = rough || path.is_split ? split_rays : new_rays;
+  float allowance = point.allowance;
+  unsigned at_limit = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t index = splits ? i : path.index;
+    Branches children = rough ? rough_branches(point.shading, relative_index, path.key, index, samples)
+                              : branches_between(point.shading, relative_index);
+    children.reflected_weight *= share;
+    children.refracted_weight *= share;
+    float part = allowance / static_cast<float>(count - i);
+    allowance -= part;
+    at_limit += spawn_children(point, children, part, before, after, out);
+    allowance += part;
+    TreePath own = path;
+    own.index = static_cast<std::uint16_t>(index);
+    own.is_split |= rough;
+    if (out.reflected_paths.size() < out.reflected.size()) out.reflected_paths.push_back(own.child(false));
+    if (out.refracted_paths.size() < out.refracted.size()) out.refracted_paths.push_back(own.child(true));
+  }
+  return at_limit;
+}
+
+/// `allowance`: what may be cut below the two children; what they leave of it is left. `before`, `after`: the media
+/// that the reflected and the refracted ray are in. Returns how many branches the tree's depth ended.
 [[gnu::always_inline]] inline unsigned SampleTracer::State::spawn_children(const BatchPoint& point,
-                                                                           const Branches& children, MediaId before,
-                                                                           MediaId after) {
+                                                                           const Branches& children, float& allowance,
+                                                                           MediaId before, MediaId after,
+                                                                           NewRays& out) {
   const Rgb reflected_weight = point.weight * children.reflected_weight;
   const Rgb refracted_weight = point.weight * children.refracted_weight;
   const bool reflects = !is_black(reflected_weight), refracts = !is_black(refracted_weight);
@@ -429,21 +520,25 @@ void SampleTracer::State::spawn() {
   if (level >= settings.depth) return unsigned(reflects) + unsigned(refracts);
   const Rgb below = scene.bound(settings.depth - level - 1);
   const Rgb reflected_bound = reflected_weight * below, refracted_bound = refracted_weight * below;
-  const Shares shares = divided_allowance(point.allowance, max_channel(reflected_bound), max_channel(refracted_bound));
+  const Shares shares = divided_allowance(allowance, max_channel(reflected_bound), max_channel(refracted_bound));
+  // Unless both are cut, one of them takes all that the other leaves.
+  allowance = shares.cuts_reflected && shares.cuts_refracted
+                  ? std::max(0.0f, allowance - max_channel(reflected_bound) - max_channel(refracted_bound))
+                  : 0.0f;
   const SurfacePoint& surface = point.shading.surface;
   if (reflects) {
     if (shares.cuts_reflected)
       cut(point.sample, reflected_bound);
     else
-      reflected_rays.push_back({offset_origin(surface, surface.geometric_normal), shares.reflected, children.reflected,
-                                point.sample, before, reflected_weight, point.level + 1});
+      out.reflected.push_back({offset_origin(surface, surface.geometric_normal), shares.reflected, children.reflected,
+                               point.sample, before, reflected_weight, point.level + 1});
   }
   if (refracts) {
     if (shares.cuts_refracted)
       cut(point.sample, refracted_bound);
     else
-      refracted_rays.push_back({offset_origin(surface, -surface.geometric_normal), shares.refracted, children.refracted,
-                                point.sample, after, refracted_weight, point.level + 1});
+      out.refracted.push_back({offset_origin(surface, -surface.geometric_normal), shares.refracted, children.refracted,
+                               point.sample, after, refracted_weight, point.level + 1});
   }
   return 0;
 }

@@ -43,6 +43,9 @@ void resolve_materials(const SceneDescription& scene, const Vec3d& origin, Scene
   for (const MaterialDescription& material : scene.materials) {
     if (const std::string problem = material_problem(material); !problem.empty())
       throw Error(ErrorKind::bad_input, place_of(scene, material), problem);
+    if (!(material.roughness >= 0 && material.roughness <= kMaxRoughness))
+      throw Error(ErrorKind::bad_input, place_of(scene, material),
+                  fmt::format("roughness must lie from 0 to {}, not {}", kMaxRoughness, material.roughness));
     make(material);
   }
   const auto fallback = static_cast<std::uint32_t>(scene.materials.size());
@@ -107,6 +110,7 @@ std::vector<std::string> features_in_use(const Scene& scene) {
     if (material.conductor) features.insert("conductors");
     if (material.thin) features.insert("thin sheets");
     if (material.absorbs) features.insert("absorption");
+    if (material.rough) features.insert("rough surfaces");
   }
   if (scene.transparent_shadows && !scene.lights.empty()) features.insert("transparent shadows");
   if (scene.tracks_media) features.insert("media by priority");
@@ -271,6 +275,9 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   scene.description = std::move(description);
   const Vec3d origin = scene.shapes->origin;
 
+  if (const int samples = scene.description.render.rough_samples; samples < 1 || samples > kMaxRoughSamples)
+    throw Error(ErrorKind::bad_input, {scene.description.name, 0, "render.rough_samples"},
+                fmt::format("rough_samples must lie from 1 to {}, not {}", kMaxRoughSamples, samples));
   check_adaptive_sampling(scene.description.render.adaptive, {scene.description.name, 0, "render.adaptive"});
   resolve_materials(scene.description, origin, scene);
   for (const LightDescription& light : scene.description.lights) {
@@ -289,10 +296,14 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
     const RenderSettings& render = scene.description.render;
     scene.transparent_shadows |= render.shadows && render.transparent_shadows && material.has_transmission;
     scene.tracks_media |= material.has_inside && material.priority != 0;
+    scene.rough_surfaces |= material.rough;
   }
-  for (Material& material : scene.materials) material.takes_on_the_way = material.absorbs || scene.tracks_media;
-  // Where media are tracked no surface is a plain one: one flag serves the tracer's inner loop.
-  for (Material& material : scene.materials) material.special_optics |= scene.tracks_media;
+  // Where media or paths are tracked no surface is a plain one: one flag each serves the tracer's inner loops.
+  const bool tracked = scene.tracks_media || scene.rough_surfaces;
+  for (Material& material : scene.materials) {
+    material.takes_on_the_way = material.absorbs || tracked;
+    material.special_optics |= tracked;
+  }
 
   if (scene.description.render.antialias.method == Antialiasing::Method::whitted)
     scene.small_objects =

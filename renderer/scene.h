@@ -98,6 +98,7 @@ class Scene {
   RadianceBound bound;
   bool transparent_shadows = false;  ///< light is to be followed through what transmits, and something does
   bool tracks_media = false;         ///< overlapping media are told apart by priority, and some material sets one
+  bool rough_surfaces = false;       ///< some material in use perturbs normals
   SmallObjects small_objects;        ///< as the camera sees them; none unless the anti-aliasing asks for them
 
   /// Index into materials of what a hit shows: the instance's, or else the triangle's own, or else the shape's.

@@ -71,7 +71,10 @@ struct RenderSettings {
       true;              ///< a shadow takes the highlight too (a departure from Whitted, who names the diffuse term)
   bool fresnel = false;  ///< k_s F and k_t (1 - F) in place of constant k_s and k_t
   double distance_attenuation = 0;  ///< a of max(0, 1 - a t) on child segments, per scene unit; 0: off
+  int rough_samples = 16;           ///< facets that a sample's first rough bounce is made of; later ones have one each
 };
+/// Bounds what a thread keeps of a tree: 2 rough_samples batches of rays.
+inline constexpr int kMaxRoughSamples = 1024;
 
 struct ConstantBackground {
   Rgb color{0, 0, 0};
@@ -193,7 +196,11 @@ struct MaterialDescription {
   bool thin = false;        ///< a sheet without an inside: transmits without bending
   int priority = 0;         ///< among overlapping media the highest is there; 0 everywhere: media are not tracked
   std::optional<BumpDescription> bump;
+  /// Standard deviation, along any direction, of the slopes of microfacets that perturb the normal before R and P are
+  /// formed; 0: polished. Light from sources has its highlight instead.
+  double roughness = 0;
 };
+inline constexpr double kMaxRoughness = 1;
 
 // --- shapes -------------------------------------------------------------------------------------------------
 

@@ -326,6 +326,11 @@ void visit_fields(Visitor& visit, T& render) {
               .unit = "per scene unit",
               .range = kNotNegative},
         render.distance_attenuation);
+  visit(Field{.key = "rough_samples",
+              .text = "How many facets stand for a rough surface where a way down the tree first meets one; what lies "
+                      "behind takes one each",
+              .range = {1, kMaxRoughSamples}},
+        render.rough_samples);
 }
 
 template <class Visitor, Is<CameraDescription> T>
@@ -577,6 +582,13 @@ void visit_fields(Visitor& visit, T& material) {
               .text = "A height that normals follow, and so light, but not the outline (Blinn 1978)",
               .absent = "smooth"},
         material.bump);
+  visit(
+      Field{.key = "roughness",
+            .text = "Standard deviation of the slopes of facets that take the normal's place for reflected and "
+                    "refracted rays (Whitted 1980, sec. 2); matches a highlight of exponent 1 / roughness^2 (halfway) "
+                    "or 1 / (4 roughness^2) (reflected). 0 is polished",
+            .range = {0, kMaxRoughness}},
+      material.roughness);
 }
 
 template <class Visitor, Is<FaceGroup> T>

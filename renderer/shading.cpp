@@ -45,7 +45,9 @@ Branches thin_branches(const ShadingPoint& point, float index) {
 }  // namespace
 
 [[gnu::noinline]] Branches special_branches(const ShadingPoint& point, float index) {
-  return point.material->conductor ? conductor_branches(point) : thin_branches(point, index);
+  const Material& material = *point.material;
+  if (material.conductor) return conductor_branches(point);
+  return material.thin ? thin_branches(point, index) : plain_branches(point);
 }
 
 [[gnu::noinline]] Branches branches_between(const ShadingPoint& point, float relative_index) {

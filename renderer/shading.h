@@ -134,7 +134,8 @@ inline Incidence incidence(const ShadingPoint& point) {
   return {facet, -point.direction.dot(facet)};
 }
 
-/// Thin sheets and conductors. `index`: the sheet's over that of what surrounds it.
+/// Thin sheets and conductors, and any material where media are not told apart. `index`: a thin sheet's over that of
+/// what surrounds it.
 Branches special_branches(const ShadingPoint& point, float index);
 
 /// R and P with k_s and k_t, or with k_s F and k_t (1 - F). At total internal reflection T = 0; F = 1.

@@ -87,10 +87,10 @@ TEST(CommandLineHelp, EveryFlagIsDocumentedAndEveryDocumentedFlagExists) {
 TEST(CommandLineHelp, RenderHasEveryFlagPromised) {
   const std::string help = run_program({"render", "--help"}).out;
   for (const char* flag :
-       {"-o",        "--size",    "--crop",      "--threads", "--depth",         "--cutoff",   "--antialias",
-        "--camera",  "--set",     "--channels",  "--half",    "--exposure",      "--ocio",     "--display",
-        "--view",    "--stats",   "--threshold", "--levels",  "--minimum-level", "--progress", "--quiet",
-        "--verbose", "--version", "--help",      "--format"})
+       {"-o",       "--size",    "--crop",      "--threads", "--depth",         "--cutoff",        "--antialias",
+        "--camera", "--set",     "--channels",  "--half",    "--exposure",      "--ocio",          "--display",
+        "--view",   "--stats",   "--threshold", "--levels",  "--minimum-level", "--rough-samples", "--progress",
+        "--quiet",  "--verbose", "--version",   "--help",    "--format"})
     EXPECT_TRUE(flags_in(help).count(flag)) << flag;
 }
 
@@ -152,6 +152,8 @@ TEST(CommandLineErrors, ValuesOutOfPlaceNameTheFlagAndTheForm) {
     wrong({"--levels", level}, {"--levels"});
     wrong({"--minimum-level", level}, {"--minimum-level"});
   }
+  for (const char* samples : {"0", "1025", "-1", "2.5", "x", ""})
+    wrong({"--rough-samples", samples}, {"--rough-samples"});
   wrong({"--minimum-level", "3", "--levels", "2"}, {"--minimum-level", "3", "2 levels"});
   wrong({"--exposure", "bright"}, {"--exposure", "bright"});
   wrong({"--channels", "color,dept"}, {"--channels", "\"dept\"", "did you mean depth?", "truncation, all"});

@@ -33,6 +33,7 @@ class RandomScenes {
     scene.render.depth = integer(1, 8);
     scene.render.cutoff = std::exp(uniform(std::log(1e-4), std::log(0.5)));
     scene.render.fresnel = chance(0.3);
+    scene.render.rough_samples = integer(1, 6);
     scene.render.highlights = chance(0.5) ? HighlightForm::reflected : HighlightForm::halfway;
     scene.render.shadowed_highlights = chance(0.5);
     if (chance(0.3)) scene.render.distance_attenuation = uniform(0, 0.3);
@@ -85,6 +86,7 @@ class RandomScenes {
       if (chance(0.3)) m.absorption = color(1);
       if (chance(0.15)) m.thin = true, m.absorption = Rgb(0);
       if (chance(0.15)) m.conductor = true, m.transmission = Rgb(0);
+      if (chance(0.3)) m.roughness = uniform(0.01, 1);
       if (layered) m.priority = integer(-1, 2);
       if (chance(0.2))
         m.highlight = {Rgb(0), uniform(1, 80), {{uniform(0, 40), color(0.8)}, {uniform(50, 90), color(0.8)}}};

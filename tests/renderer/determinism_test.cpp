@@ -41,6 +41,9 @@ SceneDescription busy_scene() {
   bottle.absorption = Rgb(0.5f, 0.1f, 1), bottle.priority = 2;
   liquid.name = "liquid", liquid.absorption = Rgb(0, 1, 1), liquid.index_of_refraction = 1.33, liquid.priority = 1;
   sheet.name = "sheet", sheet.thin = true;
+  sheet.roughness = 0.1, metal.roughness = 0.2, liquid.roughness = 0.05;
+  scene.materials[2].roughness = 0.05;  // beside a bump
+  scene.render.rough_samples = 5;
   metal.conductor = true, metal.reflection = Rgb(0.9f, 0.6f, 0.3f);
   metal.highlight = {Rgb(0), 6, {{0, Rgb(0.6f)}, {80, Rgb(0.8f)}}};
   scene.materials.insert(scene.materials.end(), {bottle, liquid, sheet, metal});

@@ -26,11 +26,12 @@ inline bool equal(const CameraDescription& a, const CameraDescription& b) {
          angle == b.field_of_view && height == b.height;
 }
 inline bool equal(const RenderSettings& a, const RenderSettings& b) {
-  const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, transparent, shadowed, fresnel, attenuation] =
-      a;
+  const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, transparent, shadowed, fresnel, attenuation,
+               rough_samples] = a;
   return depth == b.depth && cutoff == b.cutoff && equal(antialias, b.antialias) && equal(adaptive, b.adaptive) &&
          highlights == b.highlights && shadows == b.shadows && transparent == b.transparent_shadows &&
-         shadowed == b.shadowed_highlights && fresnel == b.fresnel && attenuation == b.distance_attenuation;
+         shadowed == b.shadowed_highlights && fresnel == b.fresnel && attenuation == b.distance_attenuation &&
+         rough_samples == b.rough_samples;
 }
 inline bool equal(const ConstantBackground& a, const ConstantBackground& b) {
   const auto& [color] = a;
@@ -150,12 +151,12 @@ inline bool equal(const LightDescription& a, const LightDescription& b) {
 }
 inline bool equal(const MaterialDescription& a, const MaterialDescription& b) {
   const auto& [name, diffuse, ambient, highlight, reflection, transmission, index, fresnel, conductor, absorption, thin,
-               priority, bump] = a;
+               priority, bump, roughness] = a;
   return name == b.name && equal(diffuse, b.diffuse) && ambient.has_value() == b.ambient.has_value() &&
          (!ambient || equal(*ambient, *b.ambient)) && equal(highlight, b.highlight) && reflection == b.reflection &&
          transmission == b.transmission && index == b.index_of_refraction && fresnel == b.fresnel &&
          conductor == b.conductor && absorption == b.absorption && thin == b.thin && priority == b.priority &&
-         bump.has_value() == b.bump.has_value() && (!bump || equal(*bump, *b.bump));
+         bump.has_value() == b.bump.has_value() && (!bump || equal(*bump, *b.bump)) && roughness == b.roughness;
 }
 /// All but where it stood in its file.
 inline bool equal(const ShapeDescription& a, const ShapeDescription& b) {

@@ -134,8 +134,8 @@ TEST(SceneReader, RefusalsSayWhatWhereAndWhatWouldBeRight) {
   EXPECT_EQ(
       refusal("\"materials\": {\n \"glass\": {\n  \"difuse\": 1}}"),
       "s.json:4: materials.glass: unknown key \"difuse\"; known keys: from, diffuse, ambient, highlight, reflection, "
-      "transmission, index_of_refraction, fresnel, conductor, absorption, thin, priority, bump (did you mean "
-      "\"diffuse\"?)");
+      "transmission, index_of_refraction, fresnel, conductor, absorption, thin, priority, bump, roughness (did you "
+      "mean \"diffuse\"?)");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\n\"type\": \"direct\"}}"),
             "s.json:3: lights.sun.type: unknown type \"direct\"; known types: directional, point, spot (did you mean "
             "\"directional\"?)");
@@ -705,7 +705,7 @@ TEST(SceneFields, TablesHoldEveryMember) {
     return counter.count;
   };
   EXPECT_EQ(count(ImageDescription{}), 2);
-  EXPECT_EQ(count(RenderSettings{}), 10);
+  EXPECT_EQ(count(RenderSettings{}), 11);
   EXPECT_EQ(count(AdaptiveSampling{}), 3);
   EXPECT_EQ(count(CameraDescription{}), 7 - 1) << "without name";
   EXPECT_EQ(count(ConstantBackground{}), 1);
@@ -720,7 +720,7 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(BumpDescription{}), 8);
   EXPECT_EQ(count(AngleWeight{}), 2);
   EXPECT_EQ(count(HighlightDescription{}), 3);
-  EXPECT_EQ(count(MaterialDescription{}), 13 - 1 + 1) << "without name, with \"from\"";
+  EXPECT_EQ(count(MaterialDescription{}), 14 - 1 + 1) << "without name, with \"from\"";
   EXPECT_EQ(count(FaceGroup{}), 4);
   EXPECT_EQ(count(MeshShape{}), 4);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";
