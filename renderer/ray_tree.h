@@ -17,9 +17,9 @@
 namespace raytree {
 
 /// Rays in flight at once. A queue pops so many of its newest rays and pushes at most twice as many, so it never holds
-/// more than kBatchSize times the tree's depth. A rough bounce pushes 2 N for one, but once on a way down the tree: such
-/// rays lie above all that may still split, and are gone before one of those splits; so they add 2 N kBatchSize and
-/// what grows from the newest kBatchSize of them.
+/// more than kBatchSize times the tree's depth. A rough bounce pushes 2 N for one, but once on a way down the tree:
+/// such rays lie above all that may still split, and are gone before one of those splits; so they add 2 N kBatchSize
+/// and what grows from the newest kBatchSize of them.
 inline constexpr std::size_t kBatchSize = 1024;
 
 /// What an eye ray hit.
