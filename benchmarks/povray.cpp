@@ -324,7 +324,7 @@ std::vector<Figure> measure_povray(const MeasureContext& context) {
     if (with_mesh) figures.push_back(launch_figure(context, described(), scene));
     // Converged pictures take 81 and 256 samples a pixel: a smaller one serves.
     SceneDescription small = described();
-    small.image = {640, 480};
+    small.image = {320, 240};
     Scene small_scene = prepared(std::move(small));
     figures.push_back(adaptive_figure(context, small_scene, name + "-adaptive"));
   }
