@@ -13,6 +13,7 @@
 #include "geometry/mesh_file.h"
 #include "geometry/text_scanning.h"
 #include "tests/mesh_expectations.h"
+#include "tests/reader_checks.h"
 #include "tests/test_data.h"
 
 namespace raytree {
@@ -231,12 +232,7 @@ TEST(ObjReader, OddButValidFilesLoadWithCountedWarnings) {
   EXPECT_EQ(mesh.face_count(), 2u);
   EXPECT_TRUE(mesh.all_triangles());
   EXPECT_EQ(mesh.corners, (Buffer<std::uint32_t>{0, 1, 2, 0, 1, 2}));
-  const auto find = [&](const std::string& part) {
-    for (const Warning& w : warnings)
-      if (w.message.find(part) != std::string::npos)
-        return std::to_string(w.where.line) + " x" + std::to_string(w.count);
-    return std::string("none");
-  };
+  const auto find = [&](const std::string& part) { return test::found_warning(warnings, part); };
   EXPECT_EQ(find("material libraries"), "none");
   EXPECT_EQ(mesh.material_libraries, std::vector<std::string>{"a.mtl"});
   EXPECT_EQ(find("lines and points"), "8 x2");
