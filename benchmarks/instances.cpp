@@ -6,12 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/bare_trace.h"
 #include "benchmarks/child_process.h"
-#include "benchmarks/intersection_benchmark.h"
-#include "benchmarks/recording_intersector.h"
 #include "benchmarks/reference_scenes.h"
 #include "benchmarks/rows.h"
+#include "benchmarks/seam_comparison.h"
 #include "geometry/error.h"
 
 namespace raytree::benchmarks {
@@ -72,22 +70,10 @@ std::vector<Figure> measure_instances(const MeasureContext& context) {
   for (const BenchmarkRays kind : {BenchmarkRays::primary, BenchmarkRays::shadow, BenchmarkRays::bounce}) {
     context.progress(fmt::format("instances: {} rays", name_of(kind)));
     const RaySet& rays = sets[static_cast<std::size_t>(kind)];
-    const RayRecord record = record_of(rays);
-    const BareReplay replay(embree_of(scene), record);
     const ReplayCalls calls = calls_of(embree_of(scene));
-    const std::size_t ray_class = static_cast<std::size_t>(record.batches.front().ray_class);
-    std::uint64_t bare_hits = 0, hits = 0;
-    const auto bare = [&] {
-      const ReplayTally tally = replay_pass(replay, calls, 1);
-      bare_hits = tally.hits[ray_class];
-      return tally.total_seconds();
-    };
-    const auto batched = [&] {
-      const PassResult pass = batched_pass(scene, rays, 1);
-      hits = pass.hits;
-      return pass.seconds;
-    };
-    const PairedSpread pairs = measure_pairs(batched, bare, PairLimits());
+    SeamComparison comparison(scene, embree_of(scene), rays, calls);
+    const PairedSpread pairs = measure_pairs([&] { return comparison.seam_seconds(); },
+                                             [&] { return comparison.bare_seconds(); }, PairLimits());
     Figure figure;
     figure.row = "instances";
     figure.what =
@@ -96,9 +82,10 @@ std::vector<Figure> measure_instances(const MeasureContext& context) {
     figure.measured = pairs.ratio;
     figure.kind = BoundKind::at_most;
     figure.bound = kMostOverBare;
-    if (bare_hits != hits) figure.problem = fmt::format("the bare calls hit {} times, the seam {}", bare_hits, hits);
+    figure.problem = comparison.problem();
     figure.note = fmt::format("{:.4f} s by the seam, {:.4f} s bare: {}; fastest: {}", pairs.a.median, pairs.b.median,
-                              calls_text(calls, record), calls_text(best_calls(replay, 1), record));
+                              calls_text(calls, comparison.record()),
+                              calls_text(best_calls(comparison.replay(), 1), comparison.record()));
     figures.push_back(figure);
   }
   return figures;

@@ -1,11 +1,9 @@
 // Row bench: what `raytree bench` adds to the Embree calls that it times.
 #include <fmt/format.h>
 
-#include "benchmarks/bare_trace.h"
-#include "benchmarks/intersection_benchmark.h"
-#include "benchmarks/recording_intersector.h"
 #include "benchmarks/reference_scenes.h"
 #include "benchmarks/rows.h"
+#include "benchmarks/seam_comparison.h"
 
 namespace raytree::benchmarks {
 namespace {
@@ -24,20 +22,9 @@ std::vector<Figure> measure_intersection_overhead(const MeasureContext& context)
   for (const BenchmarkRays kind : {BenchmarkRays::primary, BenchmarkRays::shadow, BenchmarkRays::bounce}) {
     context.progress(fmt::format("bench: {} rays", name_of(kind)));
     const RaySet& rays = sets[static_cast<std::size_t>(kind)];
-    const RayRecord record = record_of(rays);
-    const BareReplay replay(*embree, record);
-    std::uint64_t bare_hits = 0, hits = 0;
-    const auto bare = [&] {
-      const ReplayTally tally = replay_pass(replay, calls, 1);
-      bare_hits = tally.hits[static_cast<std::size_t>(record.batches.front().ray_class)];
-      return tally.total_seconds();
-    };
-    const auto batched = [&] {
-      const PassResult pass = batched_pass(scene, rays, 1);
-      hits = pass.hits;
-      return pass.seconds;
-    };
-    const PairedSpread pairs = measure_pairs(bare, batched, PairLimits());
+    SeamComparison comparison(scene, *embree, rays, calls);
+    const PairedSpread pairs = measure_pairs([&] { return comparison.bare_seconds(); },
+                                             [&] { return comparison.seam_seconds(); }, PairLimits());
     Figure figure;
     figure.row = "bench";
     figure.what = fmt::format("bare Embree calls / raytree bench, {} {} rays, {}, 1 thread", rays.size(), name_of(kind),
@@ -45,8 +32,7 @@ std::vector<Figure> measure_intersection_overhead(const MeasureContext& context)
     figure.measured = pairs.ratio;
     figure.kind = BoundKind::at_least;
     figure.bound = kShareOfEmbree;
-    if (bare_hits != hits)
-      figure.problem = fmt::format("the bare calls hit {} times, the benchmark {}", bare_hits, hits);
+    figure.problem = comparison.problem();
     figure.note = fmt::format("{:.4f} s bare, {:.4f} s by the benchmark", pairs.a.median, pairs.b.median);
     figures.push_back(figure);
   }
