@@ -13,16 +13,15 @@ constexpr double kShareOfEmbree = 0.95;
 }  // namespace
 
 std::vector<Figure> measure_intersection_overhead(const MeasureContext& context) {
-  const Scene scene = prepared(reference_scene_with_mesh());
+  const Scene scene = prepared(reference_mesh_alone());
   const std::array<RaySet, kBenchmarkRaysCount> sets = benchmark_rays(scene);
   const ReplayCalls calls = calls_of(embree_of(scene));
-  const std::unique_ptr<EmbreeIntersector> embree = plain_embree(scene);
   std::vector<Figure> figures;
   // Mixed packets get their call one by one: there is no one call to compare them with.
   for (const BenchmarkRays kind : {BenchmarkRays::primary, BenchmarkRays::shadow, BenchmarkRays::bounce}) {
     context.progress(fmt::format("bench: {} rays", name_of(kind)));
     const RaySet& rays = sets[static_cast<std::size_t>(kind)];
-    SeamComparison comparison(scene, *embree, rays, calls);
+    SeamComparison comparison(scene, embree_of(scene), rays, calls);
     const PairedSpread pairs = measure_pairs([&] { return comparison.bare_seconds(); },
                                              [&] { return comparison.seam_seconds(); }, PairLimits());
     Figure figure;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <thread>
 
 #include "benchmarks/child_process.h"
 #include "benchmarks/povray_scene.h"
@@ -36,10 +37,16 @@ class Povray {
     size_ = {fmt::format("+W{}", scene.description.image.width), fmt::format("+H{}", scene.description.image.height)};
   }
 
-  /// Renders with one thread and 16 bits of linear light; `flags`: of its anti-aliasing.
-  ChildResult run(const std::vector<std::string>& flags) const {
-    std::vector<std::string> words{
-        "povray", "+I" + scene_file_.string(), "+O" + picture_.string(), "+FN16", "File_Gamma=1.0", "+WT1", "-D", "-V"};
+  /// Renders 16 bits of linear light; `flags`: of its anti-aliasing.
+  ChildResult run(const std::vector<std::string>& flags, int threads = 1) const {
+    std::vector<std::string> words{"povray",
+                                   "+I" + scene_file_.string(),
+                                   "+O" + picture_.string(),
+                                   "+FN16",
+                                   "File_Gamma=1.0",
+                                   fmt::format("+WT{}", threads),
+                                   "-D",
+                                   "-V"};
     words.insert(words.end(), size_.begin(), size_.end());
     words.insert(words.end(), flags.begin(), flags.end());
     const ChildResult child = run_child(words, scratch_);
@@ -231,21 +238,24 @@ std::filesystem::path write_scene_with_mesh_file(const std::filesystem::path& fo
   return path;
 }
 
-/// From launch to file with the mesh, which both read as text.
+/// From launch to file with the mesh, which both read as text; as users run them, on all cores.
 Figure launch_figure(const MeasureContext& context, const SceneDescription& description, const Scene& scene) {
   context.progress("povray: launch to picture, " + scene.description.name);
   const Povray povray(context, scene, PovrayPicture::shaded, 0, "launch");
   const std::filesystem::path ours = write_scene_with_mesh_file(context.scratch, description, scene);
+  const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const auto our_run = [&] {
-    const ChildResult child = run_child({context.programs / "raytree", "render", ours, "--threads", "1", "-o",
-                                         context.scratch / "launch.png", "--quiet", "--progress", "none"},
-                                        context.scratch);
+    const ChildResult child =
+        run_child({context.programs / "raytree", "render", ours, "--threads", std::to_string(threads), "-o",
+                   context.scratch / "launch.png", "--quiet", "--progress", "none"},
+                  context.scratch);
     require_success(child, "raytree render");
     return child.wall_seconds;
   };
-  const PairedSpread pairs = measure_pairs([&] { return povray.run({"-A"}).wall_seconds; }, our_run, few_pairs());
+  const PairedSpread pairs =
+      measure_pairs([&] { return povray.run({"-A"}, threads).wall_seconds; }, our_run, few_pairs());
   return figure_of(
-      "POV-Ray's time from launch to PNG / ours, " + picture_text(scene, 1), pairs.ratio, BoundKind::at_least,
+      "POV-Ray's time from launch to PNG / ours, " + picture_text(scene, threads), pairs.ratio, BoundKind::at_least,
       kLaunchRatio,
       fmt::format("{:.2f} s against {:.2f} s; the mesh is text for both (OBJ for us)", pairs.a.median, pairs.b.median));
 }
@@ -256,14 +266,25 @@ Figure distance_figure(const MeasureContext& context, Scene& scene, const std::s
   context.progress("povray: distances, " + scene.description.name);
   RenderSettings settings = scene.description.render;
   settings.antialias = {Antialiasing::Method::none, 1};
+  // Three samples to a pixel and axis, the middle one at its center: what lies between pixels is an edge too.
+  constexpr int kFine = 3;
+  const ImageDescription image = scene.description.image;
+  scene.description.image = {kFine * image.width, kFine * image.height};
+  scene.camera =
+      Camera(scene.description.cameras.front(), kFine * image.width, kFine * image.height, scene.shapes->origin, {});
   const Film film = traced(scene, settings, {ChannelGroup::depth, ChannelGroup::object_id}).film;
+  scene.description.image = image;
+  scene.camera = Camera(scene.description.cameras.front(), image.width, image.height, scene.shapes->origin, {});
   const float* const depth = film.plane(ChannelGroup::depth, 0);
   const std::uint32_t* const object = film.id_plane(ChannelGroup::object_id);
-  const int width = film.window().width, height = film.window().height;
-  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const int width = image.width, height = image.height, fine_width = film.window().width;
+  const auto at_center = [&](int x, int y) {
+    return static_cast<std::size_t>(kFine * y + 1) * fine_width + static_cast<std::size_t>(kFine * x + 1);
+  };
   float farthest = 0;
-  for (std::size_t i = 0; i < pixels; ++i)
-    if (object[i] != 0) farthest = std::max(farthest, depth[i]);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (object[at_center(x, y)] != 0) farthest = std::max(farthest, depth[at_center(x, y)]);
   // Nearness 0 must mean that nothing was hit.
   const double reach = 1.05 * farthest, tolerance = 1.5 * reach / kLargest16;
 
@@ -275,21 +296,21 @@ Figure distance_figure(const MeasureContext& context, Scene& scene, const std::s
   double largest = 0;
   for (int y = 1; y + 1 < height; ++y)
     for (int x = 1; x + 1 < width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * width + x;
+      const std::size_t i = at_center(x, y), pixel = static_cast<std::size_t>(y) * width + x;
       bool edge = false;
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
-          const std::size_t k = i + static_cast<std::size_t>(dy * width + dx);
+      for (int dy = -kFine; dy <= kFine; ++dy)
+        for (int dx = -kFine; dx <= kFine; ++dx) {
+          const std::size_t k = i + static_cast<std::size_t>(dy * fine_width + dx);
           // Within one object an edge is where the distance jumps by more than a slope would have it.
           edge |= object[k] != object[i] || std::abs(depth[k] - depth[i]) > 0.02f * depth[i];
         }
       if (edge) continue;
       ++compared;
       const bool hit = object[i] != 0;
-      if (hit != (nearness[i] > 0)) {
+      if (hit != (nearness[pixel] > 0)) {
         ++hit_by_one;
       } else if (hit) {
-        const double off = std::abs((1 - nearness[i]) * reach - depth[i]);
+        const double off = std::abs((1 - nearness[pixel]) * reach - depth[i]);
         largest = std::max(largest, off);
         elsewhere += off > tolerance;
       }

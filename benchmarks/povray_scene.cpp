@@ -31,8 +31,8 @@ class Writer {
 
   void write() {
     const RenderSettings& settings = scene_.description.render;
-    put("#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level {} ambient_light {} }}\n", settings.depth,
-        rgb(scene_.ambient));
+    put("#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level {} adc_bailout {} ambient_light {} }}\n",
+        settings.depth, settings.cutoff, rgb(scene_.ambient));
     write_camera();
     if (picture_ == PovrayPicture::shaded) {
       write_background();

@@ -46,8 +46,13 @@ const EmbreeIntersector& embree_of(const Scene& scene) {
 
 std::unique_ptr<EmbreeIntersector> plain_embree(const Scene& scene) {
   EmbreeOptions options;
-  options.all_in_embree = true;
+  options.most_few_shapes = 0;
   return std::make_unique<EmbreeIntersector>(*scene.shapes, options);
+}
+
+Scene with_tracer(Scene scene, const EmbreeOptions& options) {
+  scene.intersector = std::make_unique<EmbreeIntersector>(*scene.shapes, options);
+  return scene;
 }
 
 }  // namespace raytree::benchmarks

@@ -43,4 +43,7 @@ const EmbreeIntersector& embree_of(const Scene& scene);
 /// Embree over the scene's shapes with all but planes in it, as anyone would build it: what bare calls are made on.
 std::unique_ptr<EmbreeIntersector> plain_embree(const Scene& scene);
 
+/// The prepared scene with a tracer built anew with other options.
+Scene with_tracer(Scene scene, const EmbreeOptions& options);
+
 }  // namespace raytree::benchmarks

@@ -46,14 +46,23 @@ SceneDescription terrain_scene(std::int64_t triangles) {
   return scene;
 }
 
-SceneDescription instances_scene() {
+SceneDescription reference_mesh_alone() {
+  SceneDescription scene = reference_scene_with_mesh();
+  std::erase_if(scene.shapes, [](const ShapeDescription& shape) {
+    return !std::holds_alternative<MeshShape>(shape.kind) && !std::holds_alternative<TerrainShape>(shape.kind);
+  });
+  scene.name += ", triangles alone";
+  return scene;
+}
+
+SceneDescription instances_scene(int edge) {
   SceneDescription scene;
   scene.name = "instances";
   scene.image = {1280, 960};
   scene.render.antialias = {Antialiasing::Method::none, 1};
   CameraDescription camera;
   camera.name = "main";
-  camera.position = {-30, 40, 130};
+  camera.position = Vec3d(-0.3, 0.4, 1.3) * edge;
   camera.target = {0, 0, 0};
   scene.cameras.push_back(camera);
   LightDescription sun;
@@ -71,16 +80,15 @@ SceneDescription instances_scene() {
   hill.kind = terrain;
   group.shapes.push_back(hill);
   scene.groups.push_back(group);
-  constexpr int kEdge = 100;
-  for (int z = 0; z < kEdge; ++z)
-    for (int x = 0; x < kEdge; ++x) {
+  for (int z = 0; z < edge; ++z)
+    for (int x = 0; x < edge; ++x) {
       ShapeDescription use;
       use.name = fmt::format("hill {} {}", x, z);
       use.kind = InstanceShape{"hill"};
       Matrix44d scale, turn, place;
       scale.setScale(1.1 + 0.07 * ((3 * x + 5 * z) % 7));
       turn.rotate(Vec3d(0.05 * ((x + 2 * z) % 5), 0.7 * x + 1.3 * z, 0));
-      place.setTranslation(Vec3d(x - kEdge / 2, 0.03 * ((7 * x + 3 * z) % 11), z - kEdge / 2));
+      place.setTranslation(Vec3d(x - edge / 2, 0.03 * ((7 * x + 3 * z) % 11), z - edge / 2));
       use.transform = scale * turn * place;
       scene.shapes.push_back(use);
     }

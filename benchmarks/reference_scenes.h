@@ -15,14 +15,17 @@ SceneDescription reference_scene();
 /// The same with a terrain of about a million triangles behind the spheres, seen straight, mirrored and refracted.
 SceneDescription reference_scene_with_mesh();
 
+/// That without its spheres: triangles alone.
+SceneDescription reference_mesh_alone();
+
 /// The built-in terrain with so many triangles, 1920x1080; all else is the scene's own.
 SceneDescription terrain_scene(std::int64_t triangles);
 inline constexpr const char* kTerrainSceneName = "terrain";                   ///< as `raytree render` takes it
 inline constexpr const char* kTerrainCountPath = "shapes.terrain.triangles";  ///< as `--set` takes it
 
-/// 10,000 instances of a terrain of a million triangles, turned and scaled each in its own way, side by side before the
+/// edge^2 instances of a terrain of a million triangles, turned and scaled each in its own way, side by side before the
 /// camera; 1280x960 without anti-aliasing.
-SceneDescription instances_scene();
+SceneDescription instances_scene(int edge = 100);
 
 /// One sphere, 64x64: what is left of a render's time is the program's start.
 SceneDescription trivial_scene();

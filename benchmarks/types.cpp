@@ -2,8 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
 
 #include "benchmarks/intersection_benchmark.h"
+#include "benchmarks/recording_intersector.h"
 #include "benchmarks/reference_scenes.h"
 #include "benchmarks/rows.h"
 
@@ -11,14 +15,6 @@ namespace raytree::benchmarks {
 namespace {
 
 constexpr double kLeastShare = 0.9;
-
-SceneDescription without_spheres(SceneDescription scene) {
-  std::erase_if(scene.shapes, [](const ShapeDescription& shape) {
-    return !std::holds_alternative<MeshShape>(shape.kind) && !std::holds_alternative<TerrainShape>(shape.kind);
-  });
-  scene.name += ", triangles alone";
-  return scene;
-}
 
 /// The rays that get the same answer in both scenes, in their order.
 RaySet unstopped(const RaySet& rays, const Scene& a, const Scene& b) {
@@ -45,11 +41,61 @@ RaySet unstopped(const RaySet& rays, const Scene& a, const Scene& b) {
   return kept;
 }
 
+/// The triangles of the reference scene under a flock of small spheres.
+SceneDescription with_flock(int count) {
+  SceneDescription scene = reference_mesh_alone();
+  std::mt19937 random(1980);
+  std::uniform_real_distribution<double> place(-1, 1);
+  for (int i = 0; i < count; ++i) {
+    ShapeDescription sphere;
+    sphere.name = fmt::format("sphere {}", i);
+    sphere.kind = SphereShape{{4 * place(random), 2 + place(random), 4 * place(random) - 2}, 0.25};
+    scene.shapes.push_back(sphere);
+  }
+  scene.name = fmt::format("{} spheres beside 1M triangles", count);
+  return scene;
+}
+
+/// What a hierarchy of the spheres' own costs all kinds of rays, beside testing them one by one.
+Figure tested_one_by_one(int count, const MeasureContext& context) {
+  context.progress(fmt::format("types: {} spheres", count));
+  EmbreeOptions hierarchy, one_by_one;
+  hierarchy.most_few_shapes = 0;
+  one_by_one.most_few_shapes = std::numeric_limits<std::size_t>::max();
+  const Scene built = with_tracer(prepared(with_flock(count)), hierarchy),
+              tested = with_tracer(prepared(with_flock(count)), one_by_one);
+  const std::array<RaySet, kBenchmarkRaysCount> sets = benchmark_rays(tested);
+  std::uint64_t hits_built = 0, hits_tested = 0;
+  const auto seconds = [&](const Scene& scene, std::uint64_t& hits) {
+    double sum = hits = 0;
+    for (const RaySet& rays : sets) {
+      const PassResult pass = batched_pass(scene, rays, 1);
+      sum += pass.seconds, hits += pass.hits;
+    }
+    return sum;
+  };
+  const PairedSpread pairs = measure_pairs([&] { return seconds(built, hits_built); },
+                                           [&] { return seconds(tested, hits_tested); }, PairLimits());
+  Figure figure;
+  figure.row = "types";
+  figure.what =
+      fmt::format("a hierarchy of the spheres' own / testing them one by one, time of all rays, {}, 1 thread; {}",
+                  built.description.name,
+                  static_cast<std::size_t>(count) <= kMostFewShapes ? "the renderer takes the second"
+                                                                    : "the renderer takes the first");
+  figure.measured = pairs.ratio;
+  // Rays at a sphere's outline may differ by rounding.
+  const double differ = std::abs(static_cast<double>(hits_built) - static_cast<double>(hits_tested));
+  if (differ > 1e-4 * static_cast<double>(hits_tested))
+    figure.problem = fmt::format("{} hits in the hierarchy, {} one by one", hits_built, hits_tested);
+  return figure;
+}
+
 }  // namespace
 
 std::vector<Figure> measure_types(const MeasureContext& context) {
   const Scene whole = prepared(reference_scene_with_mesh());
-  const Scene alone = prepared(without_spheres(reference_scene_with_mesh()));
+  const Scene alone = prepared(reference_mesh_alone());
   // The rays of the triangles alone that no sphere stops: they find the same in both scenes, by the same way.
   std::array<RaySet, kBenchmarkRaysCount> sets = benchmark_rays(alone);
   for (RaySet& rays : sets) rays = unstopped(rays, alone, whole);
@@ -81,6 +127,7 @@ std::vector<Figure> measure_types(const MeasureContext& context) {
                               1e9 * pairs.b.median / static_cast<double>(rays.size()));
     figures.push_back(figure);
   }
+  for (const int count : {2, 8, 16, 32}) figures.push_back(tested_one_by_one(count, context));
   return figures;
 }
 

@@ -21,11 +21,6 @@ using embree::traceable;
 /// faster; rays in random directions lose half their speed when followed together.
 constexpr float kAlikeCosine = 0.5f;
 
-/// From so many instances on no packet is followed together, since its rays are soon in different instances. Measured:
-/// at 10,000 instances packets without the coherent flag are the fastest call for eye, shadow and scattered rays; in
-/// the scene forest packets judged alike take 1.5 times single rays' time.
-constexpr std::size_t kManyInstances = 100;
-
 template <int Width>
 void copy_lanes(void* to, const void* from) {
   std::memcpy(to, from, Width * 4);
@@ -189,7 +184,7 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
     : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.shapes = &shapes;
-  state.few = FewShapes(shapes, options.all_in_embree);
+  state.few = FewShapes(shapes, options.most_few_shapes);
   const std::string config = options.threads > 0 ? "threads=" + std::to_string(options.threads) : std::string();
   state.device.reset(rtcNewDevice(config.c_str()));
   if (!state.device) throw Error(ErrorKind::failure, {}, "Embree does not start on this processor");
@@ -229,7 +224,7 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
 
   state.scene = scene_of(device, shapes, options, state.few);
   state.instanced = !shapes.instances.empty();
-  state.together = shapes.instances.size() < kManyInstances;
+  state.together = shapes.instances.size() < options.many_instances;
   state.first_instance = kFirstMeshGeometry + static_cast<GeometryId>(shapes.meshes.size());
   for (std::size_t i = 0; i < shapes.instances.size(); ++i) {
     const Instance& instance = shapes.instances[i];

@@ -6,10 +6,15 @@
 #include <memory>
 #include <string>
 
+#include "geometry/few_shapes.h"
 #include "geometry/ray_intersector.h"
 #include "geometry/shape_set.h"
 
 namespace raytree {
+
+/// Instances from which packets without Embree's coherent flag are the fastest call for every class of rays (`./run
+/// measure instances` compares).
+inline constexpr std::size_t kManyInstances = 100;
 
 struct EmbreeOptions {
   enum class Quality { low, medium, high };
@@ -17,7 +22,11 @@ struct EmbreeOptions {
   bool robust = true;    ///< watertight edges at .85-.91 of the speed
   bool compact = false;  ///< half the memory at .6 of the speed
   Quality quality = Quality::medium;
-  bool all_in_embree = false;               ///< spheres and discs too where they are few: the plain way, for comparison
+  /// Up to so many spheres, and as many discs, are tested beside Embree; 0: all go to Embree. Answers do not depend on
+  /// it but for rounding; benchmarks vary it.
+  std::size_t most_few_shapes = kMostFewShapes;
+  /// From so many instances on no packet is followed together; see follows_packets_together().
+  std::size_t many_instances = kManyInstances;
   const std::atomic<bool>* stop = nullptr;  ///< ends the build early
 };
 

@@ -21,11 +21,11 @@ struct FewShapes {
   bool spheres = false, discs = false;
 
   FewShapes() = default;
-  /// `planes_alone`: spheres and discs are left to the tracer, however few.
-  FewShapes(const ShapeSet& set, bool planes_alone)
+  /// Planes, and spheres and discs where each are no more than `most`; the others are left to the tracer.
+  FewShapes(const ShapeSet& set, std::size_t most)
       : shapes(&set),
-        spheres(!planes_alone && !set.spheres.shape.empty() && set.spheres.shape.size() <= kMostFewShapes),
-        discs(!planes_alone && !set.discs.shape.empty() && set.discs.shape.size() <= kMostFewShapes) {}
+        spheres(!set.spheres.shape.empty() && set.spheres.shape.size() <= most),
+        discs(!set.discs.shape.empty() && set.discs.shape.size() <= most) {}
 
   bool any() const { return spheres || discs || !shapes->planes.empty(); }
 };

@@ -55,7 +55,7 @@ TEST(FewShapes, BatchesFindWhatSingleRaysFind) {
           shapes.spheres.center_radius = {ball};
           shapes.spheres.shape = {0};
         }
-        const FewShapes few(shapes, false);
+        const FewShapes few(shapes, kMostFewShapes);
         ASSERT_TRUE(few.any());
         const RayBatch rays = rays_at_outlines(ball, double(radius) * far, random);
         FewHits found;
@@ -80,7 +80,7 @@ TEST(FewShapes, RaysThatOverflowAreLookedAtInDouble) {
   RayBatch rays(8);
   for (int i = 0; i < 8; ++i) rays.push({0, 0, 0}, {0, 0, -1}, INFINITY);
   FewHits found;
-  intersect_few(FewShapes(shapes, false), rays, found);
+  intersect_few(FewShapes(shapes, kMostFewShapes), rays, found);
   for (int i = 0; i < 8; ++i) {
     EXPECT_EQ(found.geometry[i], kSphereGeometry);
     EXPECT_FLOAT_EQ(found.distance[i], 2e25f);
