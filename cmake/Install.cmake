@@ -7,4 +7,4 @@ install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md")
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raytree/scenes
         FILES_MATCHING PATTERN "*.json" PATTERN "*.obj" PATTERN "*.ply")
-install(TARGETS raytree_image_io raytree_exr_io LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/raytree)
+install(TARGETS raytree_image_io raytree_exr_io raytree_png_io LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/raytree)

@@ -110,7 +110,7 @@ class Module {
   std::string problem_;
 };
 
-/// Of all formats but EXR, and of reading.
+/// Of all formats without a module of their own, and of reading.
 Module& image_module() {
   static Module instance("raytree_image_io.so");
   return instance;
@@ -121,7 +121,14 @@ Module& exr_module() {
   return instance;
 }
 
-Module& encoding_module(ImageFormat format) { return format == ImageFormat::exr ? exr_module() : image_module(); }
+Module& png_module() {
+  static Module instance("raytree_png_io.so");
+  return instance;
+}
+
+Module& encoding_module(ImageFormat format) {
+  return format == ImageFormat::exr ? exr_module() : format == ImageFormat::png ? png_module() : image_module();
+}
 
 int module_type(PixelType type) {
   switch (type) {

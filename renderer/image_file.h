@@ -1,6 +1,6 @@
-// Image files: planes of pixels in, one whole file out (or none), and back. The work is done by two shared modules that
-// are opened on first use, or ahead of it in the background: raytree_exr_io writes EXR through OpenEXR;
-// raytree_image_io does the rest through OpenImageIO, whose loading costs a third of a second.
+// Image files: planes of pixels in, one whole file out (or none), and back. The work is done by shared modules that are
+// opened on first use, or ahead of it in the background: raytree_exr_io writes EXR through OpenEXR, raytree_png_io PNG
+// through libpng; raytree_image_io does the rest through OpenImageIO, whose loading costs a third of a second.
 #pragma once
 
 #include <cstddef>

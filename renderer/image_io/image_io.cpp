@@ -1,6 +1,6 @@
-// The module that links OpenImageIO, its only use in Raytree: encodes planes to a PNG, JPEG or TIFF file in memory and
-// decodes files of any format.
-// It never touches the disk when it writes: through OpenImageIO 2.4 a full disk goes unnoticed or hangs.
+// The module that links OpenImageIO, its only use in Raytree: encodes planes to a JPEG or TIFF file in memory and
+// decodes files of any format. It never touches the disk when it writes: through OpenImageIO 2.4 a full disk goes
+// unnoticed or hangs.
 
 #include <Imath/half.h>
 #include <OpenImageIO/filesystem.h>
@@ -19,14 +19,14 @@
 #include <vector>
 
 #include "renderer/image_io/module_calls.h"
+#include "renderer/image_io/pixel_rows.h"
 
 namespace {
 
-using raytree::image_io::guarded;
+using namespace raytree::image_io;
 
 constexpr int kLargestSide = 1 << 20;
 constexpr int kMostPlanes = 1024;
-constexpr int kPngFilterSub = 0x10;  // libpng's PNG_FILTER_SUB
 // A file whose header promises far more than its bytes can hold is refused before memory is asked for: deflate
 // reaches 1032:1, run lengths less.
 constexpr std::uint64_t kBombBytes = std::uint64_t{256} << 20;
@@ -53,43 +53,6 @@ OIIO::TypeDesc oiio_type(int type) {
     default:
       fail("unknown pixel type");
   }
-}
-
-std::size_t size_of(int type) { return oiio_type(type).size(); }
-
-// Copies one plane's row into interleaved file pixels. Stride in bytes.
-void convert_row(const RaytreePlane& plane, std::size_t begin, std::size_t count, std::byte* target,
-                 std::size_t stride) {
-  const auto store = [&](auto value, std::size_t i) { std::memcpy(target + i * stride, &value, sizeof value); };
-  if (plane.type == plane.source_type) {
-    const std::size_t size = size_of(plane.type);
-    const auto* source = static_cast<const std::byte*>(plane.pixels) + begin * size;
-    const auto copy = [&](auto width) {
-      for (std::size_t i = 0; i < count; ++i) std::memcpy(target + i * stride, source + i * width(), width());
-    };
-    // Constant widths, so that each copy is one move.
-    if (size == 4)
-      copy([] { return std::integral_constant<std::size_t, 4>::value; });
-    else if (size == 2)
-      copy([] { return std::integral_constant<std::size_t, 2>::value; });
-    else
-      copy([] { return std::integral_constant<std::size_t, 1>::value; });
-    return;
-  }
-  if (plane.source_type == kRaytreeFloat32 && (plane.type == kRaytreeUint8 || plane.type == kRaytreeUint16)) {
-    const auto* source = static_cast<const float*>(plane.pixels) + begin;
-    const float scale = plane.type == kRaytreeUint8 ? 255.0f : 65535.0f;
-    for (std::size_t i = 0; i < count; ++i) {
-      const float value = source[i] > 0 ? std::min(source[i], 1.0f) : 0.0f;  // NaN: 0
-      const auto level = static_cast<std::uint16_t>(value * scale + 0.5f);
-      if (plane.type == kRaytreeUint8)
-        store(static_cast<std::uint8_t>(level), i);
-      else
-        store(level, i);
-    }
-    return;
-  }
-  fail(std::string("channel ") + plane.name + ": its pixels cannot be stored as the type asked for");
 }
 
 std::string escaped(std::string_view text) {
@@ -145,14 +108,6 @@ OIIO::ImageSpec spec_of(const RaytreeImage& image) {
   // What the picture shows is not divided by its coverage, on the way in nor out.
   spec.attribute("oiio:UnassociatedAlpha", 1);
   switch (image.format) {
-    case kRaytreePng:
-      if (image.planes[0].type != kRaytreeUint8 && image.planes[0].type != kRaytreeUint16)
-        fail("PNG holds 8 or 16 bits");
-      if (channels > 4) fail("PNG holds at most 4 channels");
-      // Measured on a dithered 1920 x 1080 picture: half the time of the defaults at 12 % more bytes.
-      spec.attribute("png:compressionLevel", 2);
-      spec.attribute("png:filter", kPngFilterSub);
-      break;
     case kRaytreeJpeg:
       if (image.planes[0].type != kRaytreeUint8) fail("JPEG holds 8 bits");
       if (channels != 1 && channels != 3) fail("JPEG holds 1 or 3 channels, no alpha");
@@ -179,14 +134,12 @@ OIIO::ImageSpec spec_of(const RaytreeImage& image) {
 
 const char* dummy_name(int format) {
   switch (format) {
-    case kRaytreePng:
-      return "a.png";
     case kRaytreeJpeg:
       return "a.jpg";
     case kRaytreeTiff:
       return "a.tif";
     default:
-      fail("this module encodes PNG, JPEG and TIFF");
+      fail("this module encodes JPEG and TIFF");
   }
 }
 
@@ -244,21 +197,21 @@ void encode_to(MemoryFile& file, const RaytreeImage& image) {
   };
   check(output->open(dummy_name(image.format), spec));
 
-  std::size_t pixel_size = 0;
+  std::size_t stride = 0;
   std::vector<std::size_t> offsets;
   for (std::size_t i = 0; i < image.plane_count; ++i) {
-    offsets.push_back(pixel_size);
-    pixel_size += size_of(image.planes[i].type);
+    offsets.push_back(stride);
+    stride += pixel_size(image.planes[i].type);
   }
   const auto width = static_cast<std::size_t>(image.width);
   // Enough rows at once for every thread to compress blocks of 16 rows, and little memory.
   constexpr int kRowsAtOnce = 256;
-  std::vector<std::byte> rows(pixel_size * width * static_cast<std::size_t>(std::min(image.height, kRowsAtOnce)));
+  std::vector<std::byte> rows(stride * width * static_cast<std::size_t>(std::min(image.height, kRowsAtOnce)));
   for (int y = 0; y < image.height; y += kRowsAtOnce) {
     const int count = std::min(kRowsAtOnce, image.height - y);
     for (std::size_t i = 0; i < image.plane_count; ++i)
       convert_row(image.planes[i], static_cast<std::size_t>(y) * width, static_cast<std::size_t>(count) * width,
-                  rows.data() + offsets[i], pixel_size);
+                  rows.data() + offsets[i], stride);
     check(output->write_scanlines(spec.y + y, spec.y + y + count, 0, OIIO::TypeDesc::UNKNOWN, rows.data()));
   }
   check(output->close());
@@ -338,24 +291,24 @@ void decode_file(const char* path, const RaytreeImageSink& sink) {
     fail(reason);
   };
   // Pixels come in the file's own types, since a conversion to float would lose ids above 2^24.
-  std::size_t pixel_size = 0;
+  std::size_t stride = 0;
   std::vector<std::size_t> offsets;
   for (std::size_t i = 0; i < planes; ++i) {
-    offsets.push_back(pixel_size);
-    pixel_size += native ? size_of(types[i]) : 4;
+    offsets.push_back(stride);
+    stride += native ? pixel_size(types[i]) : 4;
   }
   const auto width = static_cast<std::size_t>(spec.width);
   const auto pixels = width * static_cast<std::size_t>(spec.height);
-  std::vector<std::byte> raw(pixels * pixel_size);
+  std::vector<std::byte> raw(pixels * stride);
   check(
       input->read_image(0, 0, 0, spec.nchannels, native ? OIIO::TypeDesc::UNKNOWN : OIIO::TypeDesc::FLOAT, raw.data()));
   std::vector<std::uint32_t> row(width * planes);
   for (int y = 0; y < spec.height; ++y) {
-    const std::byte* source = raw.data() + static_cast<std::size_t>(y) * width * pixel_size;
+    const std::byte* source = raw.data() + static_cast<std::size_t>(y) * width * stride;
     for (std::size_t i = 0; i < planes; ++i) {
       const int type = native ? types[i] : kRaytreeFloat32;
       for (std::size_t x = 0; x < width; ++x) {
-        const std::byte* value = source + x * pixel_size + offsets[i];
+        const std::byte* value = source + x * stride + offsets[i];
         std::uint32_t* target = &row[x * planes + i];
         float level = 0;
         if (type == kRaytreeFloat32 || type == kRaytreeUint32) {

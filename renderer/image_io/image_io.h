@@ -1,5 +1,6 @@
-// What crosses the border between the program and the modules raytree_image_io and raytree_exr_io: plain C types only,
-// no exception and no C++ object, so that either side may be built on its own. Both sides check kRaytreeImageIoVersion.
+// What crosses the border between the program and the modules raytree_image_io, raytree_exr_io and raytree_png_io:
+// plain C types only, no exception and no C++ object, so that either side may be built on its own. Both sides check
+// kRaytreeImageIoVersion.
 #pragma once
 
 #include <stddef.h>
@@ -63,7 +64,7 @@ struct RaytreeImageSink {
 struct RaytreeImageIo {
   int version;
   // Each returns 1, or 0 after handing a message to `error`. half_clamped counts finite values beyond the largest half.
-  // decode is null in raytree_exr_io.
+  // decode is null in all modules but raytree_image_io.
   int (*encode)(const RaytreeImage* image, RaytreeBytesSink bytes, RaytreeBytesSink error, void* context,
                 int64_t* half_clamped);
   int (*decode)(const char* path, const RaytreeImageSink* sink, RaytreeBytesSink error, void* error_context);
