@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -79,7 +80,12 @@ template <std::integral Integer>
 void read(const Place& at, const Field& field, JsonValue value, Integer& out) {
   if (value.kind() != JsonKind::number || value.number() != std::floor(value.number()))
     at.fail(value.line(), "expected a whole number, not " + description_of(value));
-  out = static_cast<Integer>(read_number(at, field, value));
+  const double x = read_number(at, field, value);
+  // 2^n, which a double holds exactly where the largest integer itself may not be one.
+  constexpr double kEnd = 2.0 * static_cast<double>(std::numeric_limits<Integer>::max() / 2 + 1);
+  if (!(x >= static_cast<double>(std::numeric_limits<Integer>::min()) && x < kEnd))
+    at.fail(value.line(), number_text(x) + " is out of range");
+  out = static_cast<Integer>(x);
 }
 
 inline void read(const Place& at, const Field&, JsonValue value, bool& out) {

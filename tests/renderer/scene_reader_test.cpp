@@ -146,6 +146,8 @@ TEST(SceneReader, TheVersionHeadsTheFile) {
   };
   EXPECT_EQ(message("{}"), "s.json:1: missing key \"raytree\"");
   EXPECT_EQ(message("{\"raytree\": 2}"), "s.json:1: raytree: scene version 2 is unknown; this program reads version 1");
+  // No int holds it, nor may it be converted to one.
+  EXPECT_EQ(message("{\"raytree\": 1e18}"), "s.json:1: raytree: 1e+18 is out of range");
   EXPECT_EQ(message("\n[]"), "s.json:2: expected an object, not an empty array");
 }
 
