@@ -135,7 +135,7 @@ TEST(MtlReader, DamagedStatementsAreErrorsWithTheirLine) {
                                          {"newmtl a\nd\n", 2, "d needs"}}) {
     SCOPED_TRACE(text);
     test::expect_refusal(
-        [&] {
+        [&text = text] {
           Warnings warnings;
           read_mtl(text, "a.mtl", warnings);
         },

@@ -125,7 +125,7 @@ TEST(NffReader, DamageIsAnErrorWithItsLine) {
         {std::string("v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 hither 1 resolution 0 5\n"), 1, "resolution"},
         {std::string("v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 hither 1 resolution 65536 65536\n"), 1, "2^30"}}) {
     SCOPED_TRACE(text);
-    test::expect_refusal([&] { read(text); }, "a.nff", line, part);
+    test::expect_refusal([&text = text] { read(text); }, "a.nff", line, part);
   }
 }
 
