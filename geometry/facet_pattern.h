@@ -3,6 +3,7 @@
 // facet_pattern.cpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -40,6 +41,14 @@ struct FacetCounts {
 
 /// The counts of make_facet_pattern() without the pattern. Throws as it does.
 FacetCounts count_facets(FaceDomain domain, std::span<const std::uint16_t> rates);
+
+/// Where the subface at corner `i` of an n-gon begins; it is half a unit wide.
+Vec2d subface_corner(std::size_t sides, std::size_t i);
+
+/// The face's parameters at points of a facet: weights are barycentric coordinates [count]. Where a facet lies across
+/// subfaces of an n-gon the way between its corners is one over the n-gon laid out flat.
+void parameters_in_facet(FaceDomain domain, std::size_t sides, const std::array<Vec2f, 3>& corners,
+                         std::span<const std::array<double, 3>> weights, Vec2f* parameters);
 
 /// Patterns made once for all faces with the same rates.
 class FacetPatternSet {

@@ -57,7 +57,6 @@ class Tessellator {
   void number_sides();
   void find_owners();
   void number_points();
-  void face_rates(std::size_t face, std::span<const FaceEdge> sides, std::vector<std::uint16_t>& rates) const;
 
   void make_face(std::size_t face, Scratch& scratch);
   void number_boundary(std::size_t face, std::span<const FaceEdge> sides, Scratch& scratch) const;
@@ -142,14 +141,6 @@ void Tessellator::find_owners() {
   });
 }
 
-void Tessellator::face_rates(std::size_t face, std::span<const FaceEdge> sides,
-                             std::vector<std::uint16_t>& rates) const {
-  rates.clear();
-  for (const FaceEdge& side : sides) rates.push_back(rates_.edges[side.edge]);
-  const auto& inner = rates_.inner[face];
-  rates.insert(rates.end(), inner.begin(), inner.begin() + inner_rate_count(surface_.domain(face)));
-}
-
 /// Points in the order of vertices, edges, insides of faces.
 void Tessellator::number_points() {
   vertex_index_.resize(vertex_owner_.size());
@@ -178,7 +169,7 @@ void Tessellator::number_points() {
     plan.first_texture = static_cast<std::uint32_t>(textures_);
     if (sides.empty()) continue;
     const FaceDomain domain = surface_.domain(face);
-    face_rates(face, sides, rates);
+    rates_of_face(surface_, rates_, face, rates);
     plan.pattern = patterns_.find(domain, rates);
     if (plan.pattern != FacetPatternSet::kNotKept) {
       const FacetPattern& pattern = patterns_[plan.pattern];
@@ -230,7 +221,7 @@ void Tessellator::make_face(std::size_t face, Scratch& scratch) {
   const std::span<const FaceEdge> sides = surface_.sides(face);
   if (sides.empty()) return;
   if (faces_[face].pattern == FacetPatternSet::kNotKept) {
-    face_rates(face, sides, scratch.rates);
+    rates_of_face(surface_, rates_, face, scratch.rates);
     scratch.pattern = make_facet_pattern(surface_.domain(face), scratch.rates);
   }
   const FacetPattern& pattern =
@@ -355,6 +346,14 @@ void Tessellator::write_facets(std::size_t face, const FacetPattern& pattern, co
 }
 
 }  // namespace
+
+void rates_of_face(const ParametricSurface& surface, const TessellationRates& rates, std::size_t face,
+                   std::vector<std::uint16_t>& face_rates) {
+  face_rates.clear();
+  for (const FaceEdge& side : surface.sides(face)) face_rates.push_back(rates.edges[side.edge]);
+  const auto& inner = rates.inner[face];
+  face_rates.insert(face_rates.end(), inner.begin(), inner.begin() + inner_rate_count(surface.domain(face)));
+}
 
 TessellationRates uniform_rates(const ParametricSurface& surface, int rate) {
   if (rate < 1 || rate > kLargestRate)

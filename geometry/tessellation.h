@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "geometry/buffer.h"
 #include "geometry/facet_pattern.h"
@@ -17,6 +19,10 @@ struct TessellationRates {
   Buffer<std::uint16_t> edges;                 ///< [edge_count]
   Buffer<std::array<std::uint16_t, 2>> inner;  ///< [face_count] of the face's inside; a quad's u and v, else one twice
 };
+
+/// Those of one face, as make_facet_pattern() takes them.
+void rates_of_face(const ParametricSurface& surface, const TessellationRates& rates, std::size_t face,
+                   std::vector<std::uint16_t>& face_rates);
 
 /// Every edge in as many equal segments of its parameter as `rates` says. Positions of corners and edges are evaluated
 /// once, by the face of the lowest number, and shared by index between all faces that meet there. So are normals, but

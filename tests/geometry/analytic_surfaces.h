@@ -126,6 +126,55 @@ inline AnalyticSurface saddle(double height) {
     return s;
   });
   surface.add_face(FaceDomain::quad, std::vector<std::uint32_t>{0, 1, 2, 3});
+  for (std::size_t i = 0; i < 4; ++i) surface.side(0, i).sharp_edge = surface.side(0, i).sharp_vertex = true;
+  return surface;
+}
+
+/// The disc of radius 1 in x and z as an n-gon cut in quads: where subface `corner` has (u, v), in the order of the
+/// rim. A Coons patch between two arcs of the rim and two spokes; of its terms these remain, for spokes end at 0.
+inline Vec2d on_disc(std::uint32_t sides, int corner, double u, double v) {
+  const double step = 2 * std::numbers::pi / sides;
+  const auto rim = [&](double ahead) {
+    const double angle = (corner + ahead / 2) * step;
+    return Vec2d(std::cos(angle), -std::sin(angle));
+  };
+  return rim(u) * (1 - v) + rim(-v) * (1 - u) - rim(0) * ((1 - u) * (1 - v));
+}
+/// Subfaces lie in tiles of a square of ceil(sqrt(n)) a side, up to 0.5 from their tile's corner. Gives the corner's
+/// number and where in the subface, both coordinates from 0 to 1.
+inline std::pair<int, Vec2d> subface_of(std::uint32_t sides, Vec2d p) {
+  const auto tiles = int(std::ceil(std::sqrt(double(sides)) - 1e-9));
+  const auto tile = [](double x) { return int(x) + (x - int(x) > 0.75 ? 1 : 0); };
+  return {tile(p.y) * tiles + tile(p.x), {2 * (p.x - tile(p.x)), 2 * (p.y - tile(p.y))}};
+}
+
+/// y = height * (1 - x^2 - z^2) over the unit disc.
+inline SurfaceSample dome_sample(std::uint32_t sides, double height, Vec2d p) {
+  const auto [corner, at] = subface_of(sides, p);
+  const Vec2d q = on_disc(sides, corner, at.x, at.y);
+  const auto lifted = [&](const Vec2d& d) { return Vec3f(Vec3d(d.x, -2 * height * q.dot(d), d.y)); };
+  // The map's formula holds beyond its square; central differences of width 2e-5 are good to 1e-9. A parameter goes
+  // half as far as the subface's own.
+  constexpr double kStep = 1e-5;
+  const auto slope = [&, corner = corner, at = at](double du, double dv) {
+    return (on_disc(sides, corner, at.x + du, at.y + dv) - on_disc(sides, corner, at.x - du, at.y - dv)) / kStep;
+  };
+  SurfaceSample s;
+  s.position = Vec3f(Vec3d(q.x, height * (1 - q.dot(q)), q.y));
+  s.normal = Vec3f(Vec3d(2 * height * q.x, 1, 2 * height * q.y).normalized());
+  s.du = lifted(slope(kStep, 0));
+  s.dv = lifted(slope(0, kStep));
+  s.texture = {float(p.x), float(p.y)};
+  return s;
+}
+
+/// One n-gon with a boundary.
+inline AnalyticSurface dome(std::uint32_t sides, double height) {
+  AnalyticSurface surface(sides, [=](std::size_t, Vec2d p) { return dome_sample(sides, height, p); });
+  std::vector<std::uint32_t> rim;
+  for (std::uint32_t i = 0; i < sides; ++i) rim.push_back(i);
+  surface.add_face(FaceDomain::quad_subfaces, rim);
+  for (std::size_t i = 0; i < sides; ++i) surface.side(0, i).sharp_edge = surface.side(0, i).sharp_vertex = true;
   return surface;
 }
 
@@ -144,20 +193,10 @@ inline AnalyticSurface cylinder(std::uint32_t sides) {
       s.dv = Vec3f(0, 2, 0);
       return s;
     }
-    // Subfaces lie in tiles of a square of ceil(sqrt(n)) a side; a point up to 0.5 beyond a tile's corner belongs to
-    // it.
-    const bool top = face == sides;
-    const auto tiles = int(std::ceil(std::sqrt(double(sides)) - 1e-9));
-    const auto tile = [](double x) { return int(x) + (x - int(x) > 0.75 ? 1 : 0); };
-    const int corner = tile(p.y) * tiles + tile(p.x);
-    const double u = 2 * (p.x - tile(p.x)), v = 2 * (p.y - tile(p.y));
-    // A Coons patch between two arcs of the rim and two spokes; of its terms these remain, for spokes end at 0.
-    const auto on_rim = [&](double ahead) { return rim((top ? 1 : -1) * (corner + ahead / 2) * step); };
-    const Vec3d flat = on_rim(u) * (1 - v) + on_rim(-v) * (1 - u) - on_rim(0) * (1 - u) * (1 - v);
-    s.position = Vec3f(flat + Vec3d(0, top ? 1 : -1, 0));
-    s.normal = Vec3f(0, top ? 1.0f : -1.0f, 0);
-    s.du = Vec3f(1, 0, 0);  // not exact: of the ends only the plane matters
-    s.dv = Vec3f(0, 0, top ? -1.0f : 1.0f);
+    s = dome_sample(sides, 0, p);
+    const float up = face == sides ? 1.0f : -1.0f;
+    for (Vec3f* v : {&s.position, &s.normal, &s.du, &s.dv}) *v *= Vec3f(1, up, up);
+    s.position.y = up;
     return s;
   });
   for (std::uint32_t i = 0; i < sides; ++i) {
