@@ -41,11 +41,14 @@ std::optional<BenchOptions> parse_bench_options(const Words& words) {
   command.add_option("--repetitions", options.repetitions, "Timed passes over each kind of ray; default: 9")
       ->type_name("N");
   add_scene_flags(command, options.scene, false);
+  add_hierarchy_flags(command, options.scene);
   command.add_option("--threads", threads, "Threads; default: all")->type_name("N");
   command.add_flag("--quiet", options.quiet, "No warnings");
   prepare_usage(command);
   if (!parse_usage(command, words)) return std::nullopt;
   check_scene_flags(options.scene);
+  // Rays are asked again and again: what they cost is what counts, not the build.
+  if (options.scene.hierarchy.empty() && options.scene.memory.empty()) options.scene.hierarchy = "balanced";
   options.threads = parse_threads(threads);
   if (options.repetitions < 1 || options.repetitions > kMostRepetitions)
     throw usage_error(fmt::format("--repetitions: {} is not within 1 and {}", options.repetitions, kMostRepetitions));

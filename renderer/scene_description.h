@@ -54,6 +54,12 @@ struct AdaptiveSampling {
   int minimum_level = 0;  ///< divisions at least, whatever the corners show
 };
 
+/// How finely curved surfaces are cut in triangles.
+struct TessellationSettings {
+  double tolerance = 0.25;  ///< pixels that a facet may lie off the limit surface, > 0; see tessellation_rates.h
+  int rate = 0;             ///< segments of every edge, to 1024; 0: as many as the tolerance asks for
+};
+
 enum class HighlightForm {
   reflected,  ///< Phong 1973, eq. 4.5: angle between reflected light and the line of sight
   halfway     ///< Whitted 1980, eq. 1: angle between normal and halfway vector
@@ -72,6 +78,7 @@ struct RenderSettings {
   bool fresnel = false;  ///< k_s F and k_t (1 - F) in place of constant k_s and k_t
   double distance_attenuation = 0;  ///< a of max(0, 1 - a t) on child segments, per scene unit; 0: off
   int rough_samples = 16;           ///< facets that a sample's first rough bounce is made of; later ones have one each
+  TessellationSettings tessellation;
 };
 /// Bounds what a thread keeps of a tree: 2 rough_samples batches of rays.
 inline constexpr int kMaxRoughSamples = 1024;

@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/facet_pattern.h"
 #include "renderer/builtin_materials.h"
 #include "renderer/scene_description.h"
 
@@ -294,6 +295,22 @@ void visit_fields(Visitor& visit, T& adaptive) {
         adaptive.minimum_level);
 }
 
+template <class Visitor, Is<TessellationSettings> T>
+void visit_fields(Visitor& visit, T& tessellation) {
+  visit(
+      Field{.key = "tolerance",
+            .text = "How far facets may lie off the limit surface as the camera sees it, in the picture; four times as "
+                    "far along the line of sight and where the frame does not reach. Normals may be off by what a "
+                    "shift of as many pixels turns them, or a pixel by 4/255",
+            .unit = "pixels",
+            .range = kPositive},
+      tessellation.tolerance);
+  visit(Field{.key = "rate",
+              .text = "Segments that every edge of a surface is cut in; 0: as many as the tolerance asks for",
+              .range = {0, kLargestRate}},
+        tessellation.rate);
+}
+
 template <class Visitor, Is<RenderSettings> T>
 void visit_fields(Visitor& visit, T& render) {
   visit(Field{.key = "depth", .text = "Levels of the ray tree; the eye ray is level 1", .range = {1, 1'000'000}},
@@ -331,6 +348,7 @@ void visit_fields(Visitor& visit, T& render) {
                       "behind takes one each",
               .range = {1, kMaxRoughSamples}},
         render.rough_samples);
+  visit(Field{.key = "tessellation", .text = "How finely curved surfaces are cut in triangles"}, render.tessellation);
 }
 
 template <class Visitor, Is<CameraDescription> T>
@@ -802,11 +820,11 @@ void visit_fields(Visitor& visit, T& scene) {
 
 /// A struct with a table.
 template <class T>
-concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> ||
-    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, StripesPattern> ||
-    Is<T, NoisePattern> || Is<T, BumpDescription> || Is<T, AngleWeight> || Is<T, HighlightDescription> ||
-    Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, GroupDescription> ||
-    Is<T, TransformStep> || Is<T, SceneDescription>;
+concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, TessellationSettings> ||
+    Is<T, RenderSettings> || Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> ||
+    Is<T, StripesPattern> || Is<T, NoisePattern> || Is<T, BumpDescription> || Is<T, AngleWeight> ||
+    Is<T, HighlightDescription> || Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> ||
+    Is<T, GroupDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.
 template <class T>

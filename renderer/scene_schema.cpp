@@ -564,6 +564,8 @@ std::string scene_reference() {
   out.table("render", "How the picture is traced.", RenderSettings{});
   out.table("render.adaptive", "The anti-aliasing of Whitted 1980, sec. 3: `\"antialias\": \"whitted\"`.",
             AdaptiveSampling{});
+  out.table("render.tessellation", "What curved surfaces become: triangles, no more than the view needs.",
+            TessellationSettings{});
   out.alternatives("background", Background{});
   out.table("cameras.NAME", "One camera.", CameraDescription{});
   out.table("lights.NAME", "One light; these keys and those of its type.", LightDescription{});

@@ -17,6 +17,7 @@
 #include "geometry/tree.h"
 #include "geometry/triangulation.h"
 #include "geometry/vertex_normals.h"
+#include "renderer/camera.h"
 #include "renderer/groups.h"
 #include "renderer/scatter.h"
 
@@ -127,9 +128,9 @@ void apply_normal_source(PolygonMesh& mesh, const MeshShape& shape, const Source
 /// Fills the assembly of one list of shapes.
 class Assembler {
  public:
-  Assembler(const SceneDescription& scene, MeshMaterials& mesh_materials, const PrepareOptions& options,
-            Warnings& warnings)
-      : scene_(scene), mesh_materials_(mesh_materials), options_(options), warnings_(warnings) {}
+  Assembler(const SceneDescription& scene, MeshMaterials& mesh_materials, const ListPlaces& places,
+            const PrepareOptions& options, Warnings& warnings)
+      : scene_(scene), mesh_materials_(mesh_materials), places_(places), options_(options), warnings_(warnings) {}
 
   ShapeList assembly;
 
@@ -166,6 +167,14 @@ class Assembler {
     summary.bounds = bounds(view);
     view.positions.swap(mesh.positions);
     assembly.meshes.push_back({std::move(mesh), id});
+  }
+
+  /// What every curved shape becomes; `surface` lies in the shape's space.
+  void add_surface(const ParametricSurface& surface, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    begin_phase("tessellating " + shape.name);
+    const SurfaceTessellation tessellation(scene_, chosen_camera(scene_, options_.camera),
+                                           options_.measure_tessellation);
+    add_mesh(tessellation.make(surface, shape, places_, summary, warnings_), shape, id, summary);
   }
 
   void add_kind(MeshShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
@@ -324,6 +333,7 @@ class Assembler {
   ShapeId first_ = 0;
   const SceneDescription& scene_;
   MeshMaterials& mesh_materials_;
+  const ListPlaces& places_;
   const PrepareOptions& options_;
   Warnings& warnings_;
 };
@@ -331,9 +341,9 @@ class Assembler {
 }  // namespace
 
 ShapeList assemble_list(std::vector<ShapeDescription>& shapes, ShapeId first, const SceneDescription& scene,
-                        MeshMaterials& mesh_materials, const PrepareOptions& options, Warnings& warnings,
-                        std::vector<ShapeSummary>& summaries) {
-  Assembler assembler(scene, mesh_materials, options, warnings);
+                        MeshMaterials& mesh_materials, const ListPlaces& places, const PrepareOptions& options,
+                        Warnings& warnings, std::vector<ShapeSummary>& summaries) {
+  Assembler assembler(scene, mesh_materials, places, options, warnings);
   assembler.add_all(shapes, first, summaries);
   return std::move(assembler.assembly);
 }

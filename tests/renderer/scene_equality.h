@@ -16,6 +16,10 @@ inline bool equal(const AdaptiveSampling& a, const AdaptiveSampling& b) {
   const auto& [threshold, levels, minimum] = a;
   return threshold == b.threshold && levels == b.levels && minimum == b.minimum_level;
 }
+inline bool equal(const TessellationSettings& a, const TessellationSettings& b) {
+  const auto& [tolerance, rate] = a;
+  return tolerance == b.tolerance && rate == b.rate;
+}
 inline bool equal(const ImageDescription& a, const ImageDescription& b) {
   const auto& [width, height] = a;
   return width == b.width && height == b.height;
@@ -27,11 +31,11 @@ inline bool equal(const CameraDescription& a, const CameraDescription& b) {
 }
 inline bool equal(const RenderSettings& a, const RenderSettings& b) {
   const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, transparent, shadowed, fresnel, attenuation,
-               rough_samples] = a;
+               rough_samples, tessellation] = a;
   return depth == b.depth && cutoff == b.cutoff && equal(antialias, b.antialias) && equal(adaptive, b.adaptive) &&
          highlights == b.highlights && shadows == b.shadows && transparent == b.transparent_shadows &&
          shadowed == b.shadowed_highlights && fresnel == b.fresnel && attenuation == b.distance_attenuation &&
-         rough_samples == b.rough_samples;
+         rough_samples == b.rough_samples && equal(tessellation, b.tessellation);
 }
 inline bool equal(const ConstantBackground& a, const ConstantBackground& b) {
   const auto& [color] = a;

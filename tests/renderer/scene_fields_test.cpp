@@ -28,7 +28,8 @@ TEST(SceneFields, TablesHoldEveryMember) {
     return counter.count;
   };
   EXPECT_EQ(count(ImageDescription{}), 2);
-  EXPECT_EQ(count(RenderSettings{}), 11);
+  EXPECT_EQ(count(RenderSettings{}), 12);
+  EXPECT_EQ(count(TessellationSettings{}), 2);
   EXPECT_EQ(count(AdaptiveSampling{}), 3);
   EXPECT_EQ(count(CameraDescription{}), 7 - 1) << "without name";
   EXPECT_EQ(count(ConstantBackground{}), 1);
