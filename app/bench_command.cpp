@@ -35,7 +35,7 @@ std::optional<BenchOptions> parse_bench_options(const Words& words) {
   CLI::App command("Measure how fast a scene's rays are intersected: batches against single rays.", "raytree bench");
   command
       .add_option("SCENE", options.scene.scene,
-                  "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)")
+                  "Scene file (.json), mesh (.obj, .ply), patches (.bpt) or built-in scene (raytree scenes)")
       ->type_name("");
   command.add_flag("--json", options.json, "Print JSON");
   command.add_option("--repetitions", options.repetitions, "Timed passes over each kind of ray; default: 9")

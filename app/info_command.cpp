@@ -34,7 +34,7 @@ std::optional<InfoOptions> parse_info_options(const Words& words) {
   CLI::App command("Say what is in a scene, and what it will take, without rendering.", "raytree info");
   command
       .add_option("SCENE", options.scene.scene,
-                  "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)")
+                  "Scene file (.json), mesh (.obj, .ply), patches (.bpt) or built-in scene (raytree scenes)")
       ->type_name("");
   command.add_flag("--json", options.json, "Print JSON");
   command.add_flag("--tessellation", options.tessellation,

@@ -28,7 +28,9 @@ struct RenderFlags {
 };
 
 void add_flags(CLI::App& command, RenderFlags& flags) {
-  command.add_option("SCENE", flags.words, "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)")
+  command
+      .add_option("SCENE", flags.words,
+                  "Scene file (.json), mesh (.obj, .ply), patches (.bpt) or built-in scene (raytree scenes)")
       ->type_name("");
   command
       .add_option(

@@ -13,6 +13,7 @@
 #include "app/suggestion.h"
 #include "geometry/facet_pattern.h"
 #include "geometry/mesh_file.h"
+#include "geometry/patch_reader.h"
 #include "renderer/builtin_scenes.h"
 #include "renderer/mesh_scene.h"
 #include "renderer/nff_reader.h"
@@ -41,7 +42,7 @@ std::vector<std::string> builtin_names() {
   const std::vector<std::string> builtin = builtin_names();
   const std::string extension = lower_extension(name);
   if (extension != ".json" && extension != ".nff" && extension != ".obj" && extension != ".ply" &&
-      name.find('/') == std::string::npos)
+      extension != ".bpt" && name.find('/') == std::string::npos)
     throw usage_error(fmt::format("scene \"{}\" is neither a file nor a built-in scene{}; built-in scenes: {}", name,
                                   did_you_mean(name, builtin), joined(builtin)));
   // A file was meant: the nearest name in its folder may be the right one.
@@ -119,13 +120,13 @@ SceneDescription read_scene_argument(const SceneFlags& flags, Warnings& warnings
     return builtin_scene(name);
   }
   if (fs::is_directory(status)) throw Error(ErrorKind::bad_input, {name, 0, ""}, "is a folder, not a scene");
-  if (is_mesh_file_name(name)) return mesh_scene(name, warnings, wanted_image(flags));
+  if (is_mesh_file_name(name) || is_patch_file_name(name)) return mesh_scene(name, warnings, wanted_image(flags));
   const std::string extension = lower_extension(name);
   if (extension == ".gz") throw Error(ErrorKind::bad_input, {name, 0, ""}, "is compressed; unpack it first (gunzip)");
   if (extension == ".nff") return read_nff_file(name, warnings);
   if (!extension.empty() && extension != ".json")
     throw Error(ErrorKind::bad_input, {name, 0, ""},
-                "is no scene by its name: a scene file ends in .json or .nff, a mesh in .obj or .ply");
+                "is no scene by its name: a scene file ends in .json or .nff, a mesh in .obj or .ply, patches in .bpt");
   return read_scene_file(name);
 }
 
@@ -212,8 +213,9 @@ std::uint64_t parse_memory(const std::string& text) {
 
 void check_scene_flags(const SceneFlags& flags) {
   if (flags.scene.empty())
-    throw usage_error("no scene: give a scene file (.json, .nff), a mesh (.obj, .ply) or a built-in scene: " +
-                      joined(builtin_names()));
+    throw usage_error(
+        "no scene: give a scene file (.json, .nff), a mesh (.obj, .ply), patches (.bpt) or a built-in scene: " +
+        joined(builtin_names()));
   if (!flags.size.empty()) parse_size("--size", flags.size);
   for (const std::string& text : flags.sets) parse_assignment(text);
   if (!flags.hierarchy.empty()) hierarchy_named(flags.hierarchy);

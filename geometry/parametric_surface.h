@@ -25,6 +25,9 @@ struct FaceEdge {
   bool reversed = false;      ///< this face runs along the edge against the edge's own direction
   bool sharp_edge = false;    ///< faces on both sides have normals of their own along it (infinite crease, boundary)
   bool sharp_vertex = false;  ///< the same at the corner
+  /// Every point of the edge is its first corner, so that the next one is the same vertex. No other face has the edge;
+  /// sharp: the normal differs along it.
+  bool collapsed = false;
 };
 
 /// The surface at one parameter of one face.

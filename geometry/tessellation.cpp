@@ -32,6 +32,18 @@ struct FacePlan {
   std::uint32_t pattern = FacetPatternSet::kNotKept;
 };
 
+bool has_collapsed(std::span<const FaceEdge> sides) {
+  return std::any_of(sides.begin(), sides.end(), [](const FaceEdge& side) { return side.collapsed; });
+}
+
+/// Whether two of a facet's corners, indices into a pattern's points, are one point of the boundary: no area is left.
+bool is_flat(const std::uint32_t* facet, const std::vector<std::uint32_t>& boundary) {
+  const auto same = [&](std::uint32_t a, std::uint32_t b) {
+    return a < boundary.size() && b < boundary.size() && boundary[a] == boundary[b];
+  };
+  return same(facet[0], facet[1]) || same(facet[1], facet[2]) || same(facet[2], facet[0]);
+}
+
 void lower(std::uint32_t& value, std::uint32_t candidate) {
   std::atomic_ref<std::uint32_t> shared(value);
   std::uint32_t current = shared.load(std::memory_order_relaxed);
@@ -57,6 +69,7 @@ class Tessellator {
   void number_sides();
   void find_owners();
   void number_points();
+  std::size_t flat_facets(std::size_t face, const std::vector<std::uint16_t>& rates) const;
 
   void make_face(std::size_t face, Scratch& scratch);
   void number_boundary(std::size_t face, std::span<const FaceEdge> sides, Scratch& scratch) const;
@@ -133,7 +146,7 @@ void Tessellator::find_owners() {
     for (std::size_t face = range.begin(); face != range.end(); ++face) {
       std::uint32_t id = faces_[face].first_side;
       for (const FaceEdge& side : surface_.sides(face)) {
-        lower(edge_owner_[side.edge], id);
+        if (!side.collapsed) lower(edge_owner_[side.edge], id);
         lower(vertex_owner_[side.vertex], id);
         ++id;
       }
@@ -180,6 +193,7 @@ void Tessellator::number_points() {
       points_ += counts.interior;
       triangles_ += counts.facets;
     }
+    if (has_collapsed(sides)) triangles_ -= flat_facets(face, rates);
     std::uint32_t id = plan.first_side;
     for (const FaceEdge& side : sides) {
       const std::uint32_t inner = rates_.edges[side.edge] - 1u;
@@ -193,6 +207,19 @@ void Tessellator::number_points() {
     check(points_ + textures_, "texture coordinates");
     check(triangles_, "triangles");
   }
+}
+
+/// How many of a face's facets lose their area along its collapsed sides.
+std::size_t Tessellator::flat_facets(std::size_t face, const std::vector<std::uint16_t>& rates) const {
+  const std::uint32_t kept = faces_[face].pattern;
+  FacetPattern made;
+  if (kept == FacetPatternSet::kNotKept) made = make_facet_pattern(surface_.domain(face), rates);
+  const FacetPattern& pattern = kept == FacetPatternSet::kNotKept ? made : patterns_[kept];
+  Scratch scratch;
+  number_boundary(face, surface_.sides(face), scratch);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pattern.facet_count(); ++i) count += is_flat(&pattern.facets[3 * i], scratch.point);
+  return count;
 }
 
 TriangleMesh Tessellator::make() {
@@ -259,7 +286,10 @@ void Tessellator::number_boundary(std::size_t face, std::span<const FaceEdge> si
     add(vertex_index_[side.vertex], vertex_owner_[side.vertex] == id, own_corner_normal(side, id));
     const std::uint32_t inner = rates_.edges[side.edge] - 1u, first = edge_first_[side.edge];
     const bool owned = edge_owner_[side.edge] == id, own = own_normal(side, id);
-    for (std::uint32_t i = 0; i < inner; ++i) add(side.reversed ? first + inner - 1 - i : first + i, owned, own);
+    // Every point of a collapsed side is its corner.
+    for (std::uint32_t i = 0; i < inner && side.collapsed; ++i) add(vertex_index_[side.vertex], false, own);
+    for (std::uint32_t i = 0; i < inner && !side.collapsed; ++i)
+      add(side.reversed ? first + inner - 1 - i : first + i, owned, own);
     ++id;
   }
 }
@@ -324,14 +354,21 @@ void Tessellator::write_facets(std::size_t face, const FacetPattern& pattern, co
   const FacePlan& plan = faces_[face];
   const std::uint32_t boundary = pattern.boundary_count,
                       inside = plan.first_point - boundary;  // wraps around, and back
+  const bool collapsed = has_collapsed(surface_.sides(face));
+  std::vector<std::uint32_t> with_area;
+  if (collapsed)
+    for (std::size_t i = 0; i < pattern.facet_count(); ++i)
+      if (const auto* facet = &pattern.facets[3 * i]; !is_flat(facet, scratch.point))
+        with_area.insert(with_area.end(), facet, facet + 3);
+  const std::vector<std::uint32_t>& facets = collapsed ? with_area : pattern.facets;
   const auto write = [&](Buffer<std::uint32_t>& corners, const std::vector<std::uint32_t>& numbers) {
     if (corners.empty()) return;
     std::uint32_t* out = corners.data() + 3 * plan.first_triangle;
     const auto copy = [&](std::size_t begin, std::size_t end) {
-      const std::uint32_t* in = pattern.facets.data();
+      const std::uint32_t* in = facets.data();
       for (std::size_t i = begin; i < end; ++i) out[i] = in[i] < boundary ? numbers[in[i]] : in[i] + inside;
     };
-    const std::size_t count = pattern.facets.size();
+    const std::size_t count = facets.size();
     if (count <= 16 * kPointsAtOnce)
       copy(0, count);
     else
@@ -341,7 +378,7 @@ void Tessellator::write_facets(std::size_t face, const FacetPattern& pattern, co
   write(mesh_.corners, scratch.point);
   write(mesh_.normal_corners, scratch.normal);
   write(mesh_.texture_corners, scratch.texture);
-  std::fill_n(mesh_.triangle_faces.begin() + static_cast<std::ptrdiff_t>(plan.first_triangle), pattern.facet_count(),
+  std::fill_n(mesh_.triangle_faces.begin() + static_cast<std::ptrdiff_t>(plan.first_triangle), facets.size() / 3,
               surface_.source_face(face));
 }
 

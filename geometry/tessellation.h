@@ -27,9 +27,10 @@ void rates_of_face(const ParametricSurface& surface, const TessellationRates& ra
 /// Every edge in as many equal segments of its parameter as `rates` says. Positions of corners and edges are evaluated
 /// once, by the face of the lowest number, and shared by index between all faces that meet there. So are normals, but
 /// where a side or corner is sharp: there each face has its own. Texture coordinates are each face's own. Holes leave
-/// nothing behind. Runs on the task arena's threads; the result does not depend on their number. triangle_faces holds
-/// source_face(). Throws Error (bad_input) when the points or triangles are more than 32 bits can count, when a rate is
-/// out of range, or when the surface is not finite somewhere.
+/// nothing behind, and all points of a collapsed side are its corner, without the facets that have no area then. Runs
+/// on the task arena's threads; the result does not depend on their number. triangle_faces holds source_face(). Throws
+/// Error (bad_input) when the points or triangles are more than 32 bits can count, when a rate is out of range, or when
+/// the surface is not finite somewhere.
 TriangleMesh tessellate(const ParametricSurface& surface, const TessellationRates& rates);
 
 /// The same with every edge and inside in `rate` segments.

@@ -3,6 +3,7 @@
 // World: right-handed, Y up, metres unless the scene means otherwise. Colors are linear Rec.709.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "geometry/error.h"
+#include "geometry/patch_surface.h"
 #include "geometry/polygon_mesh.h"
 #include "geometry/vec.h"
 #include "renderer/color.h"
@@ -225,6 +227,23 @@ struct MeshShape {
   /// The loaded mesh (also for polygons given in the scene file). Consumed by prepare().
   std::shared_ptr<PolygonMesh> mesh;
 };
+
+/// Lists of indices into positions, `Count` each.
+template <std::size_t Count>
+using IndexLists = std::vector<std::array<std::uint32_t, Count>>;
+
+/// Bezier and Coons patches, from a file or given here. Patches count in the order bezier, coons, lathe.
+struct PatchesShape {
+  std::string file;              ///< .bpt, relative to the scene file; empty: what follows
+  std::vector<Vec3d> positions;  ///< control points
+  std::vector<double> weights;   ///< positive, one a position; empty: all 1
+  IndexLists<16> bezier;         ///< bicubic patches: rows along u, from v = 0 on
+  IndexLists<12> coons;          ///< borders, once around from (u, v) = (0, 0) along u: four cubics, corners once
+  IndexLists<4> lathe;           ///< cubics of (radius, y, anything) that are turned about the y axis; see revolve()
+  double crease_angle = kPatchCreaseAngle;  ///< degrees
+  bool flip = false;                        ///< turned inside out
+  DegenerateNormal degenerate_normals = DegenerateNormal::limit;
+};
 struct SphereShape {
   Vec3d center{0, 0, 0};
   double radius = 1;
@@ -289,8 +308,8 @@ struct ScatterShape {
   double clearing_size = 1;
   std::uint32_t seed = 1980;
 };
-using ShapeKind = std::variant<MeshShape, SphereShape, PlaneShape, DiscShape, ConeShape, TerrainShape, SphereFlakeShape,
-                               TreeShape, InstanceShape, ScatterShape>;
+using ShapeKind = std::variant<MeshShape, PatchesShape, SphereShape, PlaneShape, DiscShape, ConeShape, TerrainShape,
+                               SphereFlakeShape, TreeShape, InstanceShape, ScatterShape>;
 
 struct ShapeDescription {
   std::string name;

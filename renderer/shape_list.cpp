@@ -13,12 +13,15 @@
 #include <utility>
 
 #include "geometry/mesh_file.h"
+#include "geometry/patch_surface.h"
 #include "geometry/terrain.h"
+#include "geometry/tessellation.h"
 #include "geometry/tree.h"
 #include "geometry/triangulation.h"
 #include "geometry/vertex_normals.h"
 #include "renderer/camera.h"
 #include "renderer/groups.h"
+#include "renderer/patch_shape.h"
 #include "renderer/scatter.h"
 
 namespace raytree {
@@ -56,6 +59,7 @@ double uniform_scale(const Matrix44d& m, const std::string& kind, const SourceLo
 namespace {
 
 constexpr std::size_t kGrain = 65536;
+constexpr int kSurfaceRate = 32;  ///< segments an edge of a smooth surface is cut into
 
 template <class Function>
 void for_each_index(std::size_t count, Function&& function) {
@@ -199,6 +203,20 @@ class Assembler {
     const std::vector<FaceGroup> groups = std::move(mesh->groups);
     add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
     tag_materials(groups, group_materials, assembly.meshes.back(), summary);
+  }
+
+  /// Any smooth surface, as triangles.
+  void add_surface(const ParametricSurface& surface, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    add_mesh(tessellate_uniformly(surface, kSurfaceRate), shape, id, summary);
+  }
+
+  void add_kind(PatchesShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "patches";
+    begin_phase("preparing " + shape.name);
+    const PatchSurface surface(surface_patches(kind, scene_.folder, shape.where, warnings_), surface_options(kind),
+                               shape.where, warnings_);
+    summary.faces_by_size[1] = static_cast<std::int64_t>(surface.face_count());
+    add_surface(surface, shape, id, summary);
   }
 
   /// Gives each triangle the material of its face's group.

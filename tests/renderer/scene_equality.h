@@ -105,6 +105,11 @@ inline bool equal(const MeshShape& a, const MeshShape& b) {
   return file == b.file && normals == b.normals && angle == b.crease_angle && !mesh == !b.mesh &&
          (!mesh || equal(*mesh, *b.mesh));
 }
+inline bool equal(const PatchesShape& a, const PatchesShape& b) {
+  const auto& [file, positions, weights, bezier, coons, lathe, angle, flip, normals] = a;
+  return file == b.file && positions == b.positions && weights == b.weights && bezier == b.bezier && coons == b.coons &&
+         lathe == b.lathe && angle == b.crease_angle && flip == b.flip && normals == b.degenerate_normals;
+}
 inline bool equal(const SphereShape& a, const SphereShape& b) {
   const auto& [center, radius] = a;
   return center == b.center && radius == b.radius;

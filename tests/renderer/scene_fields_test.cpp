@@ -48,6 +48,7 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(FaceGroup{}), 4);
   EXPECT_EQ(count(MeshShape{}), 4);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";
+  EXPECT_EQ(count(PatchesShape{}), 9);
   EXPECT_EQ(count(SphereShape{}), 2);
   EXPECT_EQ(count(PlaneShape{}), 2);
   EXPECT_EQ(count(DiscShape{}), 3);
