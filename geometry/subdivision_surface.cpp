@@ -267,12 +267,38 @@ class SubdivisionSurface final : public ParametricSurface {
   std::vector<LimitVertex> limit_vertices_;
 };
 
+/// Refuses faces for which OpenSubdiv 3.5's Bfr reads creases that it never wrote, and crashes: with a corner that two
+/// faces alone share whole around (interior, valence 2) and a semi-sharp crease at some corner.
+void refuse_creased_folds(const osd::Far::TopologyLevel& level, const SourceLocation& where) {
+  const auto is_fold = [&](int vertex) {
+    return level.GetVertexFaces(vertex).size() == 2 && !level.IsVertexBoundary(vertex) &&
+           !level.IsVertexNonManifold(vertex);
+  };
+  const auto is_creased = [&](int vertex) {
+    for (const int edge : level.GetVertexEdges(vertex))
+      if (level.IsEdgeSemiSharp(edge)) return true;
+    return false;
+  };
+  for (int vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+    if (!is_fold(vertex)) continue;
+    for (const int face : level.GetVertexFaces(vertex))
+      for (const int corner : level.GetFaceVertices(face))
+        if (is_creased(corner))
+          throw Error(ErrorKind::bad_input, where,
+                      "subdivision cage: face " + std::to_string(face) + " (counted from 0) has vertex " +
+                          std::to_string(vertex) +
+                          ", which two faces alone share whole around, and a semi-sharp crease at vertex " +
+                          std::to_string(corner) + ": OpenSubdiv has no limit surface there");
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<ParametricSurface> make_subdivision_surface(const PolygonMesh& mesh, const SubdivisionRules& rules,
                                                             const SourceLocation& where, Warnings& warnings) {
   check_cage(mesh, rules, where);
   const std::unique_ptr<osd::Far::TopologyRefiner> refiner = make_refiner(mesh, rules, where, warnings);
+  refuse_creased_folds(refiner->GetLevel(0), where);
   return std::make_unique<SubdivisionSurface>(mesh, rules, *refiner);
 }
 

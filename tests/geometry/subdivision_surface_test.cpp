@@ -330,7 +330,6 @@ TEST(SubdivisionSurface, OpenSubdivsShapesHaveASurfaceOrAReason) {
     const PolygonMesh mesh = read_mesh_file(path.string(), warnings);
     SubdivisionRules rules = mesh.subdivision.value_or(SubdivisionRules{});
     const std::string name = path.filename().string();
-    if (getenv("SUBD_TRACE")) std::fprintf(stderr, "%s\n", name.c_str());
     rules.scheme = name.starts_with("loop")       ? SubdivisionScheme::loop
                    : name.starts_with("bilinear") ? SubdivisionScheme::bilinear
                                                   : SubdivisionScheme::catmark;
