@@ -36,14 +36,6 @@ bool has_collapsed(std::span<const FaceEdge> sides) {
   return std::any_of(sides.begin(), sides.end(), [](const FaceEdge& side) { return side.collapsed; });
 }
 
-/// Whether two of a facet's corners, indices into a pattern's points, are one point of the boundary: no area is left.
-bool is_flat(const std::uint32_t* facet, const std::vector<std::uint32_t>& boundary) {
-  const auto same = [&](std::uint32_t a, std::uint32_t b) {
-    return a < boundary.size() && b < boundary.size() && boundary[a] == boundary[b];
-  };
-  return same(facet[0], facet[1]) || same(facet[1], facet[2]) || same(facet[2], facet[0]);
-}
-
 void lower(std::uint32_t& value, std::uint32_t candidate) {
   std::atomic_ref<std::uint32_t> shared(value);
   std::uint32_t current = shared.load(std::memory_order_relaxed);
@@ -215,10 +207,10 @@ std::size_t Tessellator::flat_facets(std::size_t face, const std::vector<std::ui
   FacetPattern made;
   if (kept == FacetPatternSet::kNotKept) made = make_facet_pattern(surface_.domain(face), rates);
   const FacetPattern& pattern = kept == FacetPatternSet::kNotKept ? made : patterns_[kept];
-  Scratch scratch;
-  number_boundary(face, surface_.sides(face), scratch);
+  std::vector<std::uint64_t> points;
+  identify_boundary(surface_.sides(face), rates, points);
   std::size_t count = 0;
-  for (std::size_t i = 0; i < pattern.facet_count(); ++i) count += is_flat(&pattern.facets[3 * i], scratch.point);
+  for (std::size_t i = 0; i < pattern.facet_count(); ++i) count += has_no_area(&pattern.facets[3 * i], points);
   return count;
 }
 
@@ -356,10 +348,15 @@ void Tessellator::write_facets(std::size_t face, const FacetPattern& pattern, co
                       inside = plan.first_point - boundary;  // wraps around, and back
   const bool collapsed = has_collapsed(surface_.sides(face));
   std::vector<std::uint32_t> with_area;
-  if (collapsed)
+  if (collapsed) {
+    std::vector<std::uint16_t> rates;
+    std::vector<std::uint64_t> points;
+    rates_of_face(surface_, rates_, face, rates);
+    identify_boundary(surface_.sides(face), rates, points);
     for (std::size_t i = 0; i < pattern.facet_count(); ++i)
-      if (const auto* facet = &pattern.facets[3 * i]; !is_flat(facet, scratch.point))
+      if (const auto* facet = &pattern.facets[3 * i]; !has_no_area(facet, points))
         with_area.insert(with_area.end(), facet, facet + 3);
+  }
   const std::vector<std::uint32_t>& facets = collapsed ? with_area : pattern.facets;
   const auto write = [&](Buffer<std::uint32_t>& corners, const std::vector<std::uint32_t>& numbers) {
     if (corners.empty()) return;
@@ -383,6 +380,26 @@ void Tessellator::write_facets(std::size_t face, const FacetPattern& pattern, co
 }
 
 }  // namespace
+
+void identify_boundary(std::span<const FaceEdge> sides, std::span<const std::uint16_t> rates,
+                       std::vector<std::uint64_t>& points) {
+  points.clear();
+  if (!has_collapsed(sides)) return;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const FaceEdge& side = sides[i];
+    points.push_back(side.vertex);
+    for (std::uint64_t k = 1; k < rates[i]; ++k)
+      points.push_back(side.collapsed ? side.vertex
+                                      : (std::uint64_t(side.edge) + 1) << 32 | (side.reversed ? rates[i] - k : k));
+  }
+}
+
+bool has_no_area(const std::uint32_t* facet, std::span<const std::uint64_t> points) {
+  const auto same = [&](std::uint32_t a, std::uint32_t b) {
+    return a < points.size() && b < points.size() && points[a] == points[b];
+  };
+  return same(facet[0], facet[1]) || same(facet[1], facet[2]) || same(facet[2], facet[0]);
+}
 
 void rates_of_face(const ParametricSurface& surface, const TessellationRates& rates, std::size_t face,
                    std::vector<std::uint16_t>& face_rates) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "geometry/buffer.h"
@@ -23,6 +24,14 @@ struct TessellationRates {
 /// Those of one face, as make_facet_pattern() takes them.
 void rates_of_face(const ParametricSurface& surface, const TessellationRates& rates, std::size_t face,
                    std::vector<std::uint16_t>& face_rates);
+
+/// Numbers for the points of a face's boundary, equal where two are one point: along collapsed sides, and where a face
+/// meets itself. points: [boundary points of its pattern]. Empty when no side is collapsed: no facet is without area.
+void identify_boundary(std::span<const FaceEdge> sides, std::span<const std::uint16_t> rates,
+                       std::vector<std::uint64_t>& points);
+
+/// Whether two of a facet's corners, indices into a pattern's points, are one point: it is left out then.
+bool has_no_area(const std::uint32_t* facet, std::span<const std::uint64_t> points);
 
 /// Every edge in as many equal segments of its parameter as `rates` says. Positions of corners and edges are evaluated
 /// once, by the face of the lowest number, and shared by index between all faces that meet there. So are normals, but

@@ -79,6 +79,7 @@ class RateFinder {
     std::vector<std::uint16_t> rates;
     std::vector<std::uint32_t> facets;
     std::vector<std::uint32_t> sample_of;  ///< [pattern's points]
+    std::vector<std::uint64_t> points;     ///< as identify_boundary() says
     std::vector<std::uint8_t> hard;        ///< as find_hard_pieces() says
     std::vector<std::uint32_t> side_of;    ///< [boundary points] the side that a point of the boundary lies on
   };
@@ -265,6 +266,7 @@ bool RateFinder::measure(std::size_t face, Scratch& scratch) const {
     scratch.rates.push_back(static_cast<std::uint16_t>(inner_[face][i]));
   const FacetPattern pattern = make_facet_pattern(domain, scratch.rates);
   find_hard_pieces(sides, scratch.rates, scratch.hard);
+  identify_boundary(sides, scratch.rates, scratch.points);
 
   // All facets, or those at the corners and some in between.
   scratch.facets.clear();
@@ -275,6 +277,7 @@ bool RateFinder::measure(std::size_t face, Scratch& scratch) const {
   };
   for (std::size_t f = 0; f < count; ++f) {
     const std::uint32_t* c = &pattern.facets[3 * f];
+    if (has_no_area(c, scratch.points)) continue;
     if (f % stride == stride / 2 || (stride > 1 && (is_corner(c[0]) || is_corner(c[1]) || is_corner(c[2]))))
       scratch.facets.push_back(static_cast<std::uint32_t>(f));
   }

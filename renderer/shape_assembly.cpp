@@ -31,6 +31,9 @@ Bounds3d transformed_bounds(const Bounds3d& box, const Matrix44d& m) {
   return result;
 }
 
+constexpr const char* kTooManyInstances =
+    "the groups within groups of this scene come to more than 50 million instances";
+
 /// A group in a space of its own.
 struct GroupAssembly {
   BoundedShapes shapes;
@@ -95,8 +98,7 @@ class GroupAssembler {
   /// How many uses with shapes `use` comes to, all others of the scene being `before`.
   std::uint64_t checked_count(const ShapeList::Use& use, std::uint64_t before, const SourceLocation& where) const {
     const std::uint64_t count = groups_[use.group].uses_in_all;
-    require(count <= kMostInstances && before + count <= kMostInstances,
-            "the groups within groups of this scene come to more than 50 million instances", where);
+    require(count <= kMostInstances && before + count <= kMostInstances, kTooManyInstances, where);
     return count;
   }
 
@@ -115,7 +117,13 @@ class GroupAssembler {
     done_[index] = true;
     GroupAssembly& group = groups_[index];
     std::vector<ShapeSummary>& shapes = summaries_[index].shapes;
-    const ListPlaces places = [&](const auto& function) { for_each_place(index, function); };
+    const ListPlaces places = [&](const std::function<void(const Matrix44d&)>& function) {
+      std::uint64_t count = 0;  // groups in groups may come to more than anyone can wait for
+      for_each_place(index, [&](const Matrix44d& place) {
+        require(++count <= kMostInstances, kTooManyInstances, description_.groups[index].where);
+        function(place);
+      });
+    };
     ShapeList list = assemble_list(description_.groups[index].shapes, first_shapes_[index], description_,
                                    mesh_materials_, places, options_, warnings_, shapes);
     for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -59,7 +59,6 @@ double uniform_scale(const Matrix44d& m, const std::string& kind, const SourceLo
 namespace {
 
 constexpr std::size_t kGrain = 65536;
-constexpr int kSurfaceRate = 32;  ///< segments an edge of a smooth surface is cut into
 
 template <class Function>
 void for_each_index(std::size_t count, Function&& function) {
@@ -203,11 +202,6 @@ class Assembler {
     const std::vector<FaceGroup> groups = std::move(mesh->groups);
     add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
     tag_materials(groups, group_materials, assembly.meshes.back(), summary);
-  }
-
-  /// Any smooth surface, as triangles.
-  void add_surface(const ParametricSurface& surface, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
-    add_mesh(tessellate_uniformly(surface, kSurfaceRate), shape, id, summary);
   }
 
   void add_kind(PatchesShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
