@@ -114,12 +114,12 @@ TessellationError measure_tessellation(const ParametricSurface& surface, const T
           rates_of_face(surface, rates, face, own_rates);
           FacetPattern own;
           if (numbers[face] == FacetPatternSet::kNotKept) own = make_facet_pattern(surface.domain(face), own_rates);
-          std::vector<std::uint32_t> with_area;
-          if (has_collapsed_side(surface, face)) with_area = facets_with_area(surface, face, own_rates, pattern);
-          const std::vector<std::uint32_t>& corners = has_collapsed_side(surface, face) ? with_area : pattern.facets;
           std::vector<std::uint8_t> hard;
           find_hard_pieces(surface.sides(face), own_rates, hard);
           const FacetPattern& pattern = numbers[face] == FacetPatternSet::kNotKept ? own : patterns[numbers[face]];
+          std::vector<std::uint32_t> with_area;
+          if (has_collapsed_side(surface, face)) with_area = facets_with_area(surface, face, own_rates, pattern);
+          const std::vector<std::uint32_t>& corners = has_collapsed_side(surface, face) ? with_area : pattern.facets;
           largest.include(tbb::parallel_reduce(
               Range(0, corners.size() / 3, kFacetsAtOnce), FacetDeviation(),
               [&](const Range& facets, FacetDeviation so_far) {

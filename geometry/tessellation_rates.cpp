@@ -18,10 +18,16 @@ namespace raytree {
 namespace {
 
 /// The share of the tolerance that rates aim at, since they are judged between the samples that chose them.
-constexpr double kAim = 0.8;
+constexpr double kAim = 0.75;
 /// A face is good where samples find at most this share of the tolerances; where they find more, rates rise until it is
 /// kAim of them.
-constexpr double kGoodShare = 0.95;
+constexpr double kGoodShare = 0.85;
+/// Facets all of whose edges look shorter than this, in pixels, are not cut for the sake of their normals: near
+/// extraordinary vertices and semi-sharp creases these converge so slowly that whole faces would become millions of
+/// triangles for the shade of a few pixels.
+constexpr double kShortestCutForShading = 6;
+/// Normals are off most elsewhere than at the middles of edges and facets, where they are sampled.
+constexpr double kShadingBetweenSamples = 1.5;
 constexpr int kFirstGrid = 2;        ///< cells along a side
 constexpr int kLargestGrid = 16;     ///< of faces that turn out to need many segments
 constexpr int kSegmentsPerCell = 4;  ///< of those: one cell for so many
@@ -316,9 +322,14 @@ bool RateFinder::measure(std::size_t face, Scratch& scratch) const {
       corners[k] = {Vec3d(sample.position), Vec3d(sample.normal)};
     }
     const SampledFacet facet(view_, origin_, corners, hard_edges(c, scratch.hard));
+    bool cut_for_shading = false;
+    for (std::size_t k = 0; k < 3; ++k)
+      cut_for_shading |= view_.pixels(origin_ + corners[k].position,
+                                      corners[(k + 1) % 3].position - corners[k].position) >= kShortestCutForShading;
     for (std::size_t m = 0; m < 4; ++m) {
       const FacetDeviation deviation = facet.at(scratch.samples[first + 4 * i + m], kMiddles[m]);
-      const double excess = std::max(deviation.pixels, deviation.shading) / tolerance_;
+      const double shading = cut_for_shading ? deviation.shading * kShadingBetweenSamples : 0;
+      const double excess = std::max(deviation.pixels, shading) / tolerance_;
       if (!(excess > kGoodShare)) continue;
       good = false;
       const double rise = std::min(std::sqrt(excess / kAim), kLargestRise);

@@ -19,8 +19,8 @@ struct ViewRates {
   std::size_t coarse_faces = 0;
 };
 
-/// Rates for which the tessellation's distance to the limit surface is at most `tolerance` pixels (> 0) and its
-/// normals' deviation at most kNormalTolerance, both as TessellationView and facet_deviation.h weigh them. First from
+/// Rates for which the tessellation lies at most `tolerance` pixels (> 0) off the limit surface, FacetDeviation's
+/// `pixels`, and for which facets that look larger than a few pixels shade as if they did, its `shading`. First from
 /// the second derivatives over each face, then by measuring: facets are sampled, and where they fail the rates of their
 /// face and of its sides rise, in at most kMostRounds rounds. An edge takes the larger demand of its faces. Time in
 /// proportion to the number of faces and the triangles that come out. Runs on the task arena's threads; the result does
