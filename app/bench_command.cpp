@@ -35,17 +35,20 @@ std::optional<BenchOptions> parse_bench_options(const Words& words) {
   CLI::App command("Measure how fast a scene's rays are intersected: batches against single rays.", "raytree bench");
   command
       .add_option("SCENE", options.scene.scene,
-                  "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)")
+                  "Scene file (.json), mesh (.obj, .ply), patches (.bpt) or built-in scene (raytree scenes)")
       ->type_name("");
   command.add_flag("--json", options.json, "Print JSON");
   command.add_option("--repetitions", options.repetitions, "Timed passes over each kind of ray; default: 9")
       ->type_name("N");
   add_scene_flags(command, options.scene, false);
+  add_hierarchy_flags(command, options.scene);
   command.add_option("--threads", threads, "Threads; default: all")->type_name("N");
   command.add_flag("--quiet", options.quiet, "No warnings");
   prepare_usage(command);
   if (!parse_usage(command, words)) return std::nullopt;
   check_scene_flags(options.scene);
+  // Rays are asked again and again: what they cost is what counts, not the build.
+  if (options.scene.hierarchy.empty() && options.scene.memory.empty()) options.scene.hierarchy = "balanced";
   options.threads = parse_threads(threads);
   if (options.repetitions < 1 || options.repetitions > kMostRepetitions)
     throw usage_error(fmt::format("--repetitions: {} is not within 1 and {}", options.repetitions, kMostRepetitions));

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "app/commands.h"
 #include "app/exit_status.h"
@@ -24,7 +25,7 @@ struct InfoOptions {
   SceneFlags scene;
   int threads = 0;
   ChannelSet channels;
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, tessellation = false;
 };
 
 std::optional<InfoOptions> parse_info_options(const Words& words) {
@@ -33,9 +34,11 @@ std::optional<InfoOptions> parse_info_options(const Words& words) {
   CLI::App command("Say what is in a scene, and what it will take, without rendering.", "raytree info");
   command
       .add_option("SCENE", options.scene.scene,
-                  "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)")
+                  "Scene file (.json), mesh (.obj, .ply), patches (.bpt) or built-in scene (raytree scenes)")
       ->type_name("");
   command.add_flag("--json", options.json, "Print JSON");
+  command.add_flag("--tessellation", options.tessellation,
+                   "Measure how far the triangles of curved shapes lie off their limit surfaces");
   add_scene_flags(command, options.scene, false);
   command.add_option("--channels", channels, "Channel groups that the film is reckoned with, or all")
       ->type_name("LIST");
@@ -98,6 +101,20 @@ Totals totals(const SceneSummary& summary) {
   return sum;
 }
 
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+Json json_of(const TessellationSummary& made) {
+  Json json = {
+      {"faces", made.faces}, {"triangles", made.triangles}, {"bytes", made.bytes}, {"coarse_faces", made.coarse_faces}};
+  if (made.measured)
+    json["measured"] = {{"samples", made.measured->samples},
+                        {"largest_pixels", made.measured->largest.pixels},
+                        {"largest_shading_pixels", made.measured->largest.shading},
+                        {"largest_distance", made.measured->largest.distance},
+                        {"largest_normal_angle_degrees", made.measured->largest.angle * kDegrees}};
+  return json;
+}
+
 Json json_of(const ShapeSummary& shape) {
   return {
       {"id", shape.id},
@@ -112,6 +129,7 @@ Json json_of(const ShapeSummary& shape) {
       {"first_extra_id", shape.first_extra_id},
       {"instanced_triangles", shape.instanced_triangles},
       {"instanced_spheres", shape.instanced_spheres},
+      {"tessellation", shape.tessellation ? json_of(*shape.tessellation) : Json(nullptr)},
       {"bounds", json_of(shape.bounds)}};
 }
 
@@ -179,6 +197,30 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+/// A row for each curved shape, the scene's and those of groups.
+std::string tessellation_text(const SceneSummary& summary) {
+  std::vector<std::vector<std::string>> rows = {{"name", "faces", "triangles", "memory", "coarse", "samples",
+                                                 "pixels off", "shading off", "units off", "normal off"}};
+  const auto add = [&](const std::string& group, const std::vector<ShapeSummary>& shapes) {
+    for (const ShapeSummary& shape : shapes) {
+      if (!shape.tessellation) continue;
+      const TessellationSummary& made = *shape.tessellation;
+      std::vector<std::string>& row =
+          rows.emplace_back(std::vector<std::string>{group + shape.name, grouped(made.faces), grouped(made.triangles),
+                                                     readable_bytes(made.bytes), grouped(made.coarse_faces)});
+      const TessellationError error = made.measured.value_or(TessellationError());
+      row.push_back(grouped(error.samples));
+      row.push_back(fmt::format("{:.4f}", error.largest.pixels));
+      row.push_back(fmt::format("{:.4f}", error.largest.shading));
+      row.push_back(fmt::format("{:.3g}", error.largest.distance));
+      row.push_back(fmt::format("{:.4f} degrees", error.largest.angle * kDegrees));
+    }
+  };
+  add("", summary.shapes);
+  for (const GroupSummary& group : summary.groups) add(group.name + "/", group.shapes);
+  return rows.size() > 1 ? "tessellation\n" + table(rows) : "tessellation  no curved shapes\n";
+}
+
 std::string info_text(const Scene& scene, const InfoOptions& options) {
   constexpr std::size_t kObjectsShown = 40;
   const SceneDescription& description = scene.description;
@@ -206,6 +248,7 @@ std::string info_text(const Scene& scene, const InfoOptions& options) {
   text += fmt::format("faces      {} triangles, {} quads, {} larger; traced as {} triangles and {} spheres\n",
                       grouped(sum.faces[0]), grouped(sum.faces[1]), grouped(sum.faces[2]), grouped(sum.triangles),
                       grouped(sum.spheres));
+  if (options.tessellation) text += tessellation_text(summary);
   if (!summary.groups.empty()) {
     text += fmt::format("groups     {}\n", summary.groups.size());
     rows = {{"name", "instances", "shapes", "traced", "spheres"}};
@@ -240,7 +283,7 @@ std::string info_text(const Scene& scene, const InfoOptions& options) {
 int info_command(const Words& words) {
   const std::optional<InfoOptions> options = parse_info_options(words);
   if (!options) return kSuccess;
-  return with_prepared_scene({options->scene, options->threads, false, options->quiet},
+  return with_prepared_scene({options->scene, options->threads, false, options->quiet, options->tessellation},
                              [&](const Scene& scene, const Interruption&) {
                                print_result(options->json ? info_json(scene, *options) : info_text(scene, *options));
                              });

@@ -14,6 +14,7 @@ struct SceneRun {
   int threads = 1;
   bool build = true;   ///< with its tracer
   bool quiet = false;  ///< no warnings
+  bool measure_tessellation = false;
 };
 
 /// Loads and prepares the scene and hands it to `use`, all on that many threads. Returns the exit status: success, or

@@ -67,6 +67,8 @@ class RenderRun {
     prepare_options.camera = options_.scene.camera;
     prepare_options.threads = options_.threads;
     prepare_options.stop = &interruption_.stop();
+    prepare_options.hierarchy = options_.scene.hierarchy;
+    prepare_options.memory_allowed = parse_memory(options_.scene.memory);
     prepare_options.on_phase = [this](const std::string& text) { progress_.phase(text); };
     Scene scene = prepare(std::move(description), prepare_options, report_.warnings);
     check_interruption();
@@ -106,6 +108,7 @@ class RenderRun {
     report_.film_bytes = result.film.memory_bytes();
     report_.array_bytes = scene.summary.array_bytes;
     report_.intersector_bytes = scene.summary.intersector_bytes;
+    report_.hierarchy = scene.summary.hierarchy;
     return result;
   }
 

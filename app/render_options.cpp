@@ -28,7 +28,9 @@ struct RenderFlags {
 };
 
 void add_flags(CLI::App& command, RenderFlags& flags) {
-  command.add_option("SCENE", flags.words, "Scene file (.json), mesh (.obj, .ply) or built-in scene (raytree scenes)")
+  command
+      .add_option("SCENE", flags.words,
+                  "Scene file (.json), mesh (.obj, .ply), patches (.bpt) or built-in scene (raytree scenes)")
       ->type_name("");
   command
       .add_option(
@@ -48,6 +50,7 @@ void add_flags(CLI::App& command, RenderFlags& flags) {
       ->type_name("FILE.json")
       ->group("Output");
   add_scene_flags(command, flags.scene, true);
+  add_hierarchy_flags(command, flags.scene);
   command.add_option("--crop", flags.crop, "Render this window of the image alone")
       ->type_name("WxH+X+Y")
       ->group("Scene");

@@ -5,16 +5,21 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <limits>
+#include <string_view>
 
 #include "app/suggestion.h"
+#include "geometry/facet_pattern.h"
 #include "geometry/mesh_file.h"
+#include "geometry/patch_reader.h"
 #include "renderer/builtin_scenes.h"
 #include "renderer/mesh_scene.h"
 #include "renderer/nff_reader.h"
 #include "renderer/scene_fields.h"
 #include "renderer/scene_reader.h"
+#include "renderer/tracer_choice.h"
 
 namespace raytree::app {
 namespace {
@@ -37,7 +42,7 @@ std::vector<std::string> builtin_names() {
   const std::vector<std::string> builtin = builtin_names();
   const std::string extension = lower_extension(name);
   if (extension != ".json" && extension != ".nff" && extension != ".obj" && extension != ".ply" &&
-      name.find('/') == std::string::npos)
+      extension != ".bpt" && name.find('/') == std::string::npos)
     throw usage_error(fmt::format("scene \"{}\" is neither a file nor a built-in scene{}; built-in scenes: {}", name,
                                   did_you_mean(name, builtin), joined(builtin)));
   // A file was meant: the nearest name in its folder may be the right one.
@@ -115,13 +120,13 @@ SceneDescription read_scene_argument(const SceneFlags& flags, Warnings& warnings
     return builtin_scene(name);
   }
   if (fs::is_directory(status)) throw Error(ErrorKind::bad_input, {name, 0, ""}, "is a folder, not a scene");
-  if (is_mesh_file_name(name)) return mesh_scene(name, warnings, wanted_image(flags));
+  if (is_mesh_file_name(name) || is_patch_file_name(name)) return mesh_scene(name, warnings, wanted_image(flags));
   const std::string extension = lower_extension(name);
   if (extension == ".gz") throw Error(ErrorKind::bad_input, {name, 0, ""}, "is compressed; unpack it first (gunzip)");
   if (extension == ".nff") return read_nff_file(name, warnings);
   if (!extension.empty() && extension != ".json")
     throw Error(ErrorKind::bad_input, {name, 0, ""},
-                "is no scene by its name: a scene file ends in .json or .nff, a mesh in .obj or .ply");
+                "is no scene by its name: a scene file ends in .json or .nff, a mesh in .obj or .ply, patches in .bpt");
   return read_scene_file(name);
 }
 
@@ -145,6 +150,14 @@ void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
   command.add_option("--set", flags.sets, "Set any value of the scene, e.g. render.depth=12; repeatable")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false)
+      ->group("Scene");
+  command
+      .add_option("--tolerance", flags.tolerance,
+                  "Pixels that triangles may lie off the curved surface that they stand for; default: 0.25")
+      ->type_name("PIXELS")
+      ->group("Scene");
+  command.add_option("--rate", flags.rate, "Cut every edge of a curved surface in N, whatever the view needs")
+      ->type_name("N")
       ->group("Scene");
   if (!tracing) return;
   command.add_option("--depth", flags.depth, "Levels of the ray tree; the eye ray is level 1")
@@ -176,12 +189,41 @@ void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
       ->group("Tracing");
 }
 
+void add_hierarchy_flags(CLI::App& command, SceneFlags& flags) {
+  command
+      .add_option("--hierarchy", flags.hierarchy,
+                  "What the tracer builds: balanced, quick or compact; default: by the rays expected")
+      ->type_name("KIND")
+      ->group("Tracing");
+  command.add_option("--memory", flags.memory, "Memory allowed for shapes and hierarchy, e.g. 800M or 4G")
+      ->type_name("SIZE")
+      ->group("Tracing");
+}
+
+std::uint64_t parse_memory(const std::string& text) {
+  if (text.empty()) return 0;
+  constexpr std::string_view kUnits = "KMGT";
+  const std::size_t unit = kUnits.find(static_cast<char>(std::toupper(static_cast<unsigned char>(text.back()))));
+  const double number = parse_real("--memory", unit == std::string_view::npos ? text : text.substr(0, text.size() - 1));
+  const double bytes = number * std::pow(1024.0, unit == std::string_view::npos ? 0.0 : double(unit) + 1);
+  if (!(bytes >= 1) || !(bytes < 0x1p62))
+    throw usage_error(fmt::format("--memory: \"{}\" is not a size, for example 800M or 4G", text));
+  return static_cast<std::uint64_t>(bytes);
+}
+
 void check_scene_flags(const SceneFlags& flags) {
   if (flags.scene.empty())
-    throw usage_error("no scene: give a scene file (.json, .nff), a mesh (.obj, .ply) or a built-in scene: " +
-                      joined(builtin_names()));
+    throw usage_error(
+        "no scene: give a scene file (.json, .nff), a mesh (.obj, .ply), patches (.bpt) or a built-in scene: " +
+        joined(builtin_names()));
   if (!flags.size.empty()) parse_size("--size", flags.size);
   for (const std::string& text : flags.sets) parse_assignment(text);
+  if (!flags.hierarchy.empty()) hierarchy_named(flags.hierarchy);
+  parse_memory(flags.memory);
+  if (!flags.tolerance.empty() && !(parse_real("--tolerance", flags.tolerance) > 0))
+    throw usage_error(fmt::format("--tolerance: {} is not larger than 0", flags.tolerance));
+  if (!flags.rate.empty()) parse_integer("--rate", flags.rate, 1, kLargestRate);
+  if (!flags.tolerance.empty() && !flags.rate.empty()) throw usage_error("--tolerance and --rate exclude each other");
   if (!flags.depth.empty()) parse_integer("--depth", flags.depth, 1, std::numeric_limits<int>::max());
   if (!flags.cutoff.empty() && parse_real("--cutoff", flags.cutoff) < 0)
     throw usage_error(fmt::format("--cutoff: {} is negative; 0 cuts nothing", flags.cutoff));
@@ -203,6 +245,11 @@ SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
     set_value(scene, "--set", assignment.path, assignment.value);
   }
   if (!flags.size.empty()) set_image_size(scene, flags.size);
+  if (!flags.tolerance.empty()) {
+    set_value(scene, "--tolerance", "render.tessellation.tolerance", flags.tolerance);
+    scene.render.tessellation.rate = 0;
+  }
+  if (!flags.rate.empty()) set_value(scene, "--rate", "render.tessellation.rate", flags.rate);
   if (!flags.depth.empty()) set_value(scene, "--depth", "render.depth", flags.depth);
   if (!flags.cutoff.empty()) scene.render.cutoff = parse_real("--cutoff", flags.cutoff);
   if (!flags.antialias.empty()) scene.render.antialias = parse_antialiasing(flags.antialias);

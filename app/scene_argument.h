@@ -1,6 +1,7 @@
 // The SCENE argument: a scene file, a bare mesh, or the name of a built-in scene, and what flags change in it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,11 +22,19 @@ struct SceneFlags {
   std::string camera;             ///< name
   std::vector<std::string> sets;  ///< PATH=VALUE
   std::string depth, cutoff, antialias, threshold, levels, minimum_level, rough_samples;
+  std::string tolerance, rate;
+  std::string hierarchy, memory;
 };
 
 /// Adds --size, --camera and --set; with `tracing` also --depth, --cutoff, --antialias and what
 /// tunes it.
 void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing);
+
+/// Adds --hierarchy and --memory, for commands that trace.
+void add_hierarchy_flags(CLI::App& command, SceneFlags& flags);
+
+/// Bytes: a number, or one with K, M, G or T (powers of 1024) behind it; 0 for none given.
+std::uint64_t parse_memory(const std::string& text);
 
 /// Throws Error (bad_input) for whatever can be said of the flags without the scene.
 void check_scene_flags(const SceneFlags& flags);

@@ -103,6 +103,7 @@ std::string statistics_text(const RenderReport& report) {
   text += fmt::format("memory     peak {} (arrays {}, intersector {}, film {})\n", readable_bytes(peak_memory_bytes()),
                       readable_bytes(report.array_bytes), readable_bytes(report.intersector_bytes),
                       readable_bytes(report.film_bytes));
+  text += "tracer     " + report.hierarchy + "\n";
   text += fmt::format("not finite {} of {} samples counted as 0", grouped(trace.not_finite_samples),
                       grouped(trace.samples));
   return text;

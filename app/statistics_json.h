@@ -27,6 +27,7 @@ struct RenderReport {
   double before_trace_seconds = 0;  ///< from launch to the start of tracing
   double first_ray_clock = 0;       ///< reading of the steady clock at the start of tracing, seconds
   std::uint64_t film_bytes = 0, array_bytes = 0, intersector_bytes = 0;
+  std::string hierarchy;                ///< what the tracer built, and why
   std::int64_t display_not_finite = 0;  ///< channel values that the display transform had to make finite
   std::vector<std::string> files;
   Warnings warnings;

@@ -1,5 +1,6 @@
 # Every library that Raytree uses, found once. Debian's CMake configs of OpenColorIO and OpenImageIO do not work
-# (off the search path; drags in OpenCV's include paths), so those two come through pkg-config.
+# (off the search path; drags in OpenCV's include paths), so those two come through pkg-config; OpenSubdiv's names a static
+# library that is not there, so it has a find module of ours.
 find_package(Threads REQUIRED)
 find_package(Imath CONFIG REQUIRED)
 find_package(OpenEXR CONFIG REQUIRED)
@@ -12,6 +13,7 @@ find_package(embree 4 CONFIG QUIET)
 if(NOT embree_FOUND)
   find_package(embree 3.13 CONFIG REQUIRED)
 endif()
+find_package(OpenSubdiv 3.5 REQUIRED)  # by cmake/FindOpenSubdiv.cmake
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)

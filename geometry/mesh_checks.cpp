@@ -101,6 +101,8 @@ void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& 
     std::size_t read = 0, write = 0, face_write = 0, group = 0;
     bool only_triangles = true;
     std::vector<FaceGroup> groups;
+    std::vector<std::uint32_t>* const holes = mesh.subdivision ? &mesh.subdivision->holes : nullptr;
+    std::vector<std::uint32_t> new_faces;  // for holes alone, which are named by number
     const std::size_t faces = mesh.face_count();
     const bool with_sizes = !mesh.face_sizes.empty();
     for (std::size_t face = 0; face < faces; ++face) {
@@ -129,6 +131,8 @@ void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& 
         if (!mesh.normal_corners.empty()) mesh.normal_corners[write + i] = mesh.normal_corners[read + kept[i]];
         if (!mesh.texture_corners.empty()) mesh.texture_corners[write + i] = mesh.texture_corners[read + kept[i]];
       }
+      if (holes != nullptr && !holes->empty())
+        new_faces.push_back(kept_size > 0 ? static_cast<std::uint32_t>(face_write) : kNoIndex);
       if (kept_size > 0) {
         if (with_sizes) mesh.face_sizes[face_write] = static_cast<std::uint32_t>(kept_size);
         only_triangles = only_triangles && kept_size == 3;
@@ -140,6 +144,10 @@ void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& 
     }
     std::erase_if(groups, [](const FaceGroup& g) { return g.face_count == 0; });
     mesh.groups = std::move(groups);
+    if (!new_faces.empty()) {
+      for (std::uint32_t& hole : *holes) hole = new_faces[hole];
+      std::erase(*holes, kNoIndex);
+    }
     mesh.corners.resize(write);
     if (!mesh.normal_corners.empty()) mesh.normal_corners.resize(write);
     if (!mesh.texture_corners.empty()) mesh.texture_corners.resize(write);

@@ -8,9 +8,7 @@
 #include "geometry/ply_reader.h"
 
 namespace raytree {
-namespace {
-
-std::string extension(const std::string& path) {
+std::string lower_extension(const std::string& path) {
   const std::size_t dot = path.find_last_of("./");
   if (dot == std::string::npos || path[dot] == '/') return {};
   std::string result = path.substr(dot);
@@ -19,10 +17,8 @@ std::string extension(const std::string& path) {
   return result;
 }
 
-}  // namespace
-
 bool is_mesh_file_name(const std::string& path) {
-  const std::string ending = extension(path);
+  const std::string ending = lower_extension(path);
   return ending == ".obj" || ending == ".ply";
 }
 
@@ -33,7 +29,7 @@ PolygonMesh read_mesh_file(const std::string& path, Warnings& warnings) {
   const std::string_view bytes = file.bytes();
   if (bytes.substr(0, 2) == "\x1f\x8b")
     throw Error(ErrorKind::bad_input, {path, 0, {}}, "the file is compressed (gzip): unpack it first");
-  return extension(path) == ".ply" ? read_ply(bytes, path, warnings) : read_obj(bytes, path, warnings);
+  return lower_extension(path) == ".ply" ? read_ply(bytes, path, warnings) : read_obj(bytes, path, warnings);
 }
 
 }  // namespace raytree

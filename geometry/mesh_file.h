@@ -16,4 +16,7 @@ PolygonMesh read_mesh_file(const std::string& path, Warnings& warnings);
 /// Whether the name ends as a mesh file's does.
 bool is_mesh_file_name(const std::string& path);
 
+/// ".obj" of "a/b.OBJ": what follows the last dot of the name, with it, in small letters; empty without one.
+std::string lower_extension(const std::string& path);
+
 }  // namespace raytree

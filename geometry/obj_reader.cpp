@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "geometry/mesh_checks.h"
+#include "geometry/obj_tags.h"
 #include "geometry/text_scanning.h"
 
 namespace raytree {
@@ -28,6 +29,7 @@ enum class Statement {
   material,
   silent,  // concerns other programs or the next reader: smoothing groups and display hints
   library,
+  subdivision_tag,
   line_or_point,
   free_form,
   unknown
@@ -48,6 +50,7 @@ Statement classify(const char*& p, const char* end) {
   if (word == "g" || word == "o") return Statement::group;
   if (word == "usemtl") return Statement::material;
   if (word == "mtllib") return Statement::library;
+  if (word == "t") return Statement::subdivision_tag;
   if (word == "l" || word == "p") return Statement::line_or_point;
   for (const std::string_view other : {"s", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib",
                                        "shadow_obj", "trace_obj", "ctech", "stech", "call", "csh"})
@@ -134,17 +137,7 @@ void count_face(const char* p, const char* end, Counts& counts) {
   counts.all_triangles = counts.all_triangles && corners == 3;
 }
 
-struct Tally {
-  std::int64_t count = 0;
-  const char* first = nullptr;
-  void add(const char* place) {
-    if (count++ == 0) first = place;
-  }
-  void add(const Tally& later) {
-    if (count == 0) first = later.first;
-    count += later.count;
-  }
-};
+using Tally = ObjTally;
 
 /// The names in force from a face on; the names are places in the text, empty where the chunk has not set them.
 struct GroupChange {
@@ -157,6 +150,7 @@ struct Findings {
   const char* error_place = nullptr;
   std::string error;
   Tally extra_components, unknown, line_or_point, free_form, libraries_dropped;
+  ObjTagFindings tags;
   Bounds3d box;
   std::vector<GroupChange> changes;
   std::vector<const char*> libraries;
@@ -191,6 +185,7 @@ class ObjParser {
     move_origin();
     join_groups();
     join_libraries();
+    join_tags();
     join_warnings();
     const MeshLocator locate{[this](std::size_t i) { return locate_statement(Statement::position, i); },
                              [this](std::size_t i) { return locate_statement(Statement::face, i); }};
@@ -335,6 +330,10 @@ class ObjParser {
     return true;
   }
 
+  bool parse_tag(const char* p, const char* end, Findings& found, const char* source) const {
+    return scan_obj_tag(p, end, {totals_.positions, totals_.faces}, source, found.tags, found.error);
+  }
+
   void parse_chunk(std::size_t chunk) {
     Findings& found = findings_[chunk];
     Counts at = starts_[chunk];
@@ -385,6 +384,9 @@ class ObjParser {
                                found.libraries.push_back(source);
                              else
                                found.libraries_dropped.add(source);
+                             break;
+                           case Statement::subdivision_tag:
+                             good = parse_tag(p, end, found, source);
                              break;
                            case Statement::line_or_point:
                              found.line_or_point.add(source);
@@ -501,6 +503,17 @@ class ObjParser {
       }
   }
 
+  void join_tags() {
+    SubdivisionRules rules;
+    bool any = false;
+    for (const Findings& found : findings_) {
+      if (!found.tags.any) continue;
+      rules = joined(std::move(rules), found.tags.rules);
+      any = true;
+    }
+    if (any) mesh_.subdivision = std::move(rules);
+  }
+
   void join_warnings() {
     Findings all;
     for (const Findings& found : findings_) {
@@ -509,6 +522,8 @@ class ObjParser {
       all.line_or_point.add(found.line_or_point);
       all.free_form.add(found.free_form);
       all.libraries_dropped.add(found.libraries_dropped);
+      all.tags.edits.add(found.tags.edits);
+      all.tags.unknown.add(found.tags.unknown);
     }
     const auto warn = [&](const Tally& tally, const std::string& message) {
       if (tally.count > 0) warnings_.push_back({location(tally.first), message, tally.count});
@@ -520,6 +535,8 @@ class ObjParser {
     warn(all.line_or_point, "lines and points dropped: only faces are drawn");
     warn(all.free_form, "statements of free-form curves and surfaces dropped");
     warn(all.libraries_dropped, "material libraries beyond the first 256 not read");
+    warn(all.tags.edits, "hierarchical edits of subdivision surfaces ignored");
+    warn(all.tags.unknown, "subdivision tags of unknown names ignored");
     warn(all.extra_components,
          "vertices with more than three components, of which the others (weight or color) are "
          "dropped");

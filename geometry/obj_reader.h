@@ -1,4 +1,5 @@
-// Wavefront OBJ: v, vn, vt, f, g, o, usemtl, mtllib; n-gons kept; relative indices; everything else skipped.
+// Wavefront OBJ: v, vn, vt, f, g, o, usemtl, mtllib, and OpenSubdiv's t (obj_tags.h); n-gons kept; relative indices;
+// everything else skipped.
 #pragma once
 
 #include <string>

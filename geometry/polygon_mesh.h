@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "geometry/buffer.h"
+#include "geometry/subdivision_cage.h"
 #include "geometry/vec.h"
 
 namespace raytree {
@@ -39,6 +41,9 @@ struct PolygonMesh {
 
   /// OBJ `mtllib`: what follows the word, in file order; one name, or several between blanks.
   std::vector<std::string> material_libraries;
+
+  /// The file's OpenSubdiv tags (OBJ `t`), which make a cage of the mesh where somebody subdivides it; absent: none.
+  std::optional<SubdivisionRules> subdivision;
 
   bool all_triangles() const { return face_sizes.empty(); }
   std::size_t face_count() const { return all_triangles() ? corners.size() / 3 : face_sizes.size(); }

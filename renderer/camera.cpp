@@ -8,6 +8,17 @@
 
 namespace raytree {
 
+const CameraDescription& chosen_camera(const SceneDescription& scene, const std::string& name) {
+  static const CameraDescription fallback;
+  if (name.empty()) return scene.cameras.empty() ? fallback : scene.cameras.front();
+  std::string choices;
+  for (const CameraDescription& camera : scene.cameras) {
+    if (camera.name == name) return camera;
+    choices += (choices.empty() ? "" : ", ") + camera.name;
+  }
+  throw Error(ErrorKind::bad_input, {scene.name, 0, "cameras"}, "no camera \"" + name + "\"; cameras: " + choices);
+}
+
 Camera::Camera(const CameraDescription& description, int width, int height, const Vec3d& scene_origin,
                const SourceLocation& where) {
   const Vec3d view = description.target - description.position;

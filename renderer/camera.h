@@ -2,11 +2,16 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 
 #include "geometry/vec.h"
 #include "renderer/scene_description.h"
 
 namespace raytree {
+
+/// The camera of that name, or the first one; a default camera where the scene has none. Throws Error (bad_input) with
+/// the names there are.
+const CameraDescription& chosen_camera(const SceneDescription& scene, const std::string& name);
 
 class Camera {
  public:

@@ -11,7 +11,11 @@
 #include <variant>
 
 #include "geometry/mesh_file.h"
+#include "geometry/patch_reader.h"
+#include "geometry/patch_surface.h"
+#include "geometry/tessellation.h"
 #include "renderer/mesh_materials.h"
+#include "renderer/patch_shape.h"
 #include "renderer/suggestion.h"
 
 namespace raytree {
@@ -130,9 +134,50 @@ Vec3d towards(const ViewAxes& axes, double right, double up, double back) {
       .normalized();
 }
 
+/// The scene without its object, which is to be the first shape: all around what fills the space of `mesh`. The first
+/// material is meant for it.
+SceneDescription surroundings(const PolygonMesh& mesh, const std::string& name, const ImageDescription& image);
+
+/// z up to y up: (x, y, z) becomes (x, z, -y).
+Matrix44d z_up_to_y_up() { return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}; }
+
+/// What a surface fills, closely enough to choose a view.
+PolygonMesh outline(const ParametricSurface& surface, const Matrix44d& transform) {
+  constexpr int kRate = 8;
+  TriangleMesh triangles = tessellate_uniformly(surface, kRate);
+  PolygonMesh mesh;
+  mesh.origin = triangles.origin * transform;
+  mesh.corners = std::move(triangles.corners);
+  mesh.positions = std::move(triangles.positions);
+  for (Vec3f& p : mesh.positions) {
+    Vec3d turned;
+    transform.multDirMatrix(Vec3d(p), turned);
+    p = Vec3f(turned);
+  }
+  return mesh;
+}
+
+SceneDescription patch_scene(const std::string& path, const ImageDescription& image) {
+  PatchesShape shape;
+  shape.file = path;
+  ShapeDescription object;
+  object.name = "object";
+  object.where = {path, 0, ""};
+  object.transform = z_up_to_y_up();
+  Warnings said_later;  // prepare() reads the file again
+  const PatchSurface surface(surface_patches(shape, "", object.where, said_later), surface_options(shape), object.where,
+                             said_later);
+  SceneDescription scene = surroundings(outline(surface, object.transform), path, image);
+  object.material = scene.materials.front().name;
+  object.kind = std::move(shape);
+  scene.shapes.insert(scene.shapes.begin(), std::move(object));
+  return scene;
+}
+
 }  // namespace
 
 SceneDescription mesh_scene(const std::string& path, Warnings& warnings, const ImageDescription& image) {
+  if (is_patch_file_name(path)) return patch_scene(path, image);
   auto mesh = std::make_shared<PolygonMesh>(read_mesh_file(path, warnings));
   if (!mesh->material_libraries.empty() && !has_material_library(*mesh, path))
     warnings.push_back({{path, 0, {}},
@@ -144,7 +189,27 @@ SceneDescription mesh_scene(const std::string& path, Warnings& warnings, const I
 SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string& name, const ImageDescription& image) {
   if (mesh->face_count() == 0)
     throw Error(ErrorKind::bad_input, {name, 0, ""}, "the mesh has no faces: there is nothing to render");
-  const Bounds3d box = used_bounds(*mesh);
+  SceneDescription scene = surroundings(*mesh, name, image);
+  ShapeDescription object;
+  object.name = "object";
+  MeshShape shape;
+  // A file's own materials count where its libraries are there; faces without one are clay in any case.
+  if (has_material_library(*mesh, name))
+    shape.file = name;
+  else
+    object.material = scene.materials.front().name;
+  shape.crease_angle = 60;
+  shape.mesh = std::move(mesh);
+  object.kind = std::move(shape);
+  object.where = {name, 0, ""};
+  scene.shapes.insert(scene.shapes.begin(), std::move(object));
+  return scene;
+}
+
+namespace {
+
+SceneDescription surroundings(const PolygonMesh& mesh, const std::string& name, const ImageDescription& image) {
+  const Bounds3d box = used_bounds(mesh);
   const ViewAxes axes = choose_view(box.size());
   const double diagonal = std::max(box.size().length(), std::numeric_limits<double>::min());
 
@@ -153,7 +218,7 @@ SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string
   scene.title = std::filesystem::path(name).filename().string();
   scene.image = image;
   scene.render.depth = 4;
-  scene.cameras = {fitted_camera(*mesh, box, image)};
+  scene.cameras = {fitted_camera(mesh, box, image)};
 
   // A warm key that rakes across the front, so that relief shows; a weak fill against it, so that shadows keep form; a
   // cool rim from behind, which parts the object from the ground.
@@ -191,25 +256,15 @@ SceneDescription mesh_scene(std::shared_ptr<PolygonMesh> mesh, const std::string
   // The ground touches the lowest vertex; what lies flat on it stays clear of it by a little, since two surfaces at one
   // place have no front.
   const double gap = box.size().y < 1e-3 * diagonal ? 2e-3 * diagonal : 1e-6 * diagonal;
-  ShapeDescription object;
-  object.name = "object";
-  MeshShape shape;
-  // A file's own materials count where its libraries are there; faces without one are clay in any case.
-  if (has_material_library(*mesh, name))
-    shape.file = name;
-  else
-    object.material = clay.name;
-  shape.crease_angle = 60;
-  shape.mesh = std::move(mesh);
-  object.kind = std::move(shape);
-  object.where = {name, 0, ""};
   ShapeDescription ground;
   ground.name = "ground";
   ground.material = floor.name;
   const Vec3d middle = box.center();
   ground.kind = PlaneShape{{middle.x, box.min.y - gap, middle.z}, {0, 1, 0}};
-  scene.shapes = {std::move(object), std::move(ground)};
+  scene.shapes = {std::move(ground)};
   return scene;
 }
+
+}  // namespace
 
 }  // namespace raytree

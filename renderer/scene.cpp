@@ -12,23 +12,13 @@
 #include "renderer/groups.h"
 #include "renderer/scene_fields.h"
 #include "renderer/shape_assembly.h"
+#include "renderer/tracer_choice.h"
 
 namespace raytree {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-const CameraDescription& chosen_camera(const SceneDescription& scene, const std::string& name) {
-  static const CameraDescription fallback;
-  if (name.empty()) return scene.cameras.empty() ? fallback : scene.cameras.front();
-  std::string choices;
-  for (const CameraDescription& camera : scene.cameras) {
-    if (camera.name == name) return camera;
-    choices += (choices.empty() ? "" : ", ") + camera.name;
-  }
-  throw Error(ErrorKind::bad_input, {scene.name, 0, "cameras"}, "no camera \"" + name + "\"; cameras: " + choices);
 }
 
 SourceLocation place_of(const SceneDescription& scene, const MaterialDescription& material) {
@@ -246,6 +236,16 @@ std::uint64_t estimated_intersector_bytes(const SceneSummary& summary) {
   return bytes;
 }
 
+std::uint64_t primitive_count(const SceneSummary& summary) {
+  std::uint64_t sum = 0;
+  const auto add = [&](const std::vector<ShapeSummary>& shapes) {
+    for (const ShapeSummary& shape : shapes) sum += shape.triangles + shape.spheres;
+  };
+  add(summary.shapes);
+  for (const GroupSummary& group : summary.groups) add(group.shapes);
+  return sum + summary.instances;
+}
+
 std::string building_text(const SceneSummary& summary) {
   std::uint64_t triangles = 0, spheres = 0;
   const auto add = [&](const std::vector<ShapeSummary>& shapes) {
@@ -334,7 +334,18 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
 
   if (options.on_phase) options.on_phase(building_text(scene.summary));
   start = std::chrono::steady_clock::now();
+  HierarchyDemand demand;
+  demand.primitives = primitive_count(scene.summary);
+  demand.rays = expected_rays(scene.description);
+  if (options.memory_allowed > 0)
+    demand.memory_allowed =
+        options.memory_allowed > scene.summary.array_bytes ? options.memory_allowed - scene.summary.array_bytes : 1;
+  const HierarchyChoice choice =
+      options.hierarchy.empty() ? choose_hierarchy(demand) : hierarchy_named(options.hierarchy);
+  scene.summary.hierarchy = choice.reason;
   EmbreeOptions embree;
+  embree.quality = choice.chosen->quality;
+  embree.compact = choice.chosen->compact;
   embree.threads = options.threads;
   embree.stop = options.stop;
   scene.intersector = std::make_unique<EmbreeIntersector>(*scene.shapes, embree);

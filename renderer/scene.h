@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "geometry/error.h"
 #include "geometry/ray_intersector.h"
 #include "geometry/shape_set.h"
+#include "geometry/tessellation_error.h"
 #include "renderer/background.h"
 #include "renderer/camera.h"
 #include "renderer/light.h"
@@ -21,6 +23,15 @@
 #include "renderer/small_objects.h"
 
 namespace raytree {
+
+/// What a curved shape became.
+struct TessellationSummary {
+  std::uint64_t faces = 0;  ///< of the surface
+  std::uint64_t triangles = 0;
+  std::uint64_t bytes = 0;                    ///< of the arrays that tracing and shading read
+  std::uint64_t coarse_faces = 0;             ///< that may be off by more than the tolerance
+  std::optional<TessellationError> measured;  ///< when PrepareOptions::measure_tessellation asked for it
+};
 
 /// What stands in a scene, for `info` and for statistics.
 struct ShapeSummary {
@@ -37,6 +48,7 @@ struct ShapeSummary {
   std::uint64_t instances = 0;
   std::uint32_t first_extra_id = 0;
   std::uint64_t instanced_triangles = 0, instanced_spheres = 0;  ///< of all its uses together
+  std::optional<TessellationSummary> tessellation;               ///< of a curved shape
   Bounds3d bounds;  ///< world space (of a group's shape: the group's); infinite for planes
 };
 
@@ -57,6 +69,7 @@ struct SceneSummary {
   Bounds3d bounds;                ///< of what is finite
   std::uint64_t array_bytes = 0;  ///< vertex, index and sphere arrays
   std::uint64_t intersector_bytes = 0;  ///< estimated before the build, measured after it
+  std::string hierarchy;                ///< what the tracer builds, and why
 };
 
 struct PrepareOptions {
@@ -64,6 +77,9 @@ struct PrepareOptions {
   int threads = 0;                          ///< that the intersector may use; 0: all of the arena
   const std::atomic<bool>* stop = nullptr;  ///< checked while building
   bool build = true;                        ///< false: assemble only, no intersector (for `info`)
+  std::string hierarchy;                    ///< see hierarchy_named(); empty: chosen by cost
+  std::uint64_t memory_allowed = 0;         ///< bytes, of arrays and hierarchy together; 0: any
+  bool measure_tessellation = false;        ///< compare every facet with its limit surface
   /// Told what begins, in a few words ("reading dragon.ply", "building over 871306 triangles"); from prepare()'s
   /// thread.
   std::function<void(const std::string&)> on_phase;

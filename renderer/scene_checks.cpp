@@ -29,7 +29,44 @@ void check(const Place& at, std::int64_t line, const CameraDescription& camera) 
   if (a.cross(b).length() < kLeastSine) at.fail(line, "up points along the line of sight; give another direction");
 }
 
+namespace {
+
+template <std::size_t Count>
+void check_indices(const Place& at, std::int64_t line, const IndexLists<Count>& lists, std::size_t positions) {
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    for (const std::uint32_t index : lists[i])
+      if (index >= positions)
+        Place(at, static_cast<std::int64_t>(i))
+            .fail(line, "index " + std::to_string(index) + " is out of range: there are " + std::to_string(positions) +
+                            " positions, counted from 0");
+}
+
+void check_patches(const Place& at, std::int64_t line, const PatchesShape& shape) {
+  const bool patches = !shape.bezier.empty() || !shape.coons.empty() || !shape.lathe.empty();
+  if (!shape.file.empty()) {
+    if (patches || !shape.positions.empty() || !shape.weights.empty())
+      at.fail(line, "give either \"file\" or \"positions\" and patches, not both");
+    return;
+  }
+  if (!patches || shape.positions.empty())
+    at.fail(line, "patches need \"file\", or \"positions\" and one of \"bezier\", \"coons\" and \"lathe\"");
+  if (!shape.weights.empty() && shape.weights.size() != shape.positions.size())
+    Place(at, "weights")
+        .fail(line, std::to_string(shape.weights.size()) + " for " + std::to_string(shape.positions.size()) +
+                        " positions; give one a position");
+  check_indices(Place(at, "bezier"), line, shape.bezier, shape.positions.size());
+  check_indices(Place(at, "coons"), line, shape.coons, shape.positions.size());
+  check_indices(Place(at, "lathe"), line, shape.lathe, shape.positions.size());
+  for (std::size_t i = 0; i < shape.lathe.size(); ++i)
+    for (const std::uint32_t index : shape.lathe[i])
+      if (shape.positions[index].x < 0)
+        Place(Place(at, "lathe"), static_cast<std::int64_t>(i)).fail(line, "a radius must not be negative");
+}
+
+}  // namespace
+
 void check(const Place& at, std::int64_t line, const ShapeDescription& shape) {
+  if (const auto* patches = std::get_if<PatchesShape>(&shape.kind)) check_patches(at, line, *patches);
   const auto* scatter = std::get_if<ScatterShape>(&shape.kind);
   if (scatter == nullptr) return;
   if (scatter->least_scale > scatter->largest_scale) at.fail(line, "least_scale is larger than largest_scale");

@@ -3,6 +3,7 @@
 // World: right-handed, Y up, metres unless the scene means otherwise. Colors are linear Rec.709.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "geometry/error.h"
+#include "geometry/patch_surface.h"
 #include "geometry/polygon_mesh.h"
 #include "geometry/vec.h"
 #include "renderer/color.h"
@@ -54,6 +56,12 @@ struct AdaptiveSampling {
   int minimum_level = 0;  ///< divisions at least, whatever the corners show
 };
 
+/// How finely curved surfaces are cut in triangles.
+struct TessellationSettings {
+  double tolerance = 0.25;  ///< pixels that a facet may lie off the limit surface, > 0; see tessellation_rates.h
+  int rate = 0;             ///< segments of every edge, to 1024; 0: as many as the tolerance asks for
+};
+
 enum class HighlightForm {
   reflected,  ///< Phong 1973, eq. 4.5: angle between reflected light and the line of sight
   halfway     ///< Whitted 1980, eq. 1: angle between normal and halfway vector
@@ -72,6 +80,7 @@ struct RenderSettings {
   bool fresnel = false;  ///< k_s F and k_t (1 - F) in place of constant k_s and k_t
   double distance_attenuation = 0;  ///< a of max(0, 1 - a t) on child segments, per scene unit; 0: off
   int rough_samples = 16;           ///< facets that a sample's first rough bounce is made of; later ones have one each
+  TessellationSettings tessellation;
 };
 /// Bounds what a thread keeps of a tree: 2 rough_samples batches of rays.
 inline constexpr int kMaxRoughSamples = 1024;
@@ -218,6 +227,23 @@ struct MeshShape {
   /// The loaded mesh (also for polygons given in the scene file). Consumed by prepare().
   std::shared_ptr<PolygonMesh> mesh;
 };
+
+/// Lists of indices into positions, `Count` each.
+template <std::size_t Count>
+using IndexLists = std::vector<std::array<std::uint32_t, Count>>;
+
+/// Bezier and Coons patches, from a file or given here. Patches count in the order bezier, coons, lathe.
+struct PatchesShape {
+  std::string file;              ///< .bpt, relative to the scene file; empty: what follows
+  std::vector<Vec3d> positions;  ///< control points
+  std::vector<double> weights;   ///< positive, one a position; empty: all 1
+  IndexLists<16> bezier;         ///< bicubic patches: rows along u, from v = 0 on
+  IndexLists<12> coons;          ///< borders, once around from (u, v) = (0, 0) along u: four cubics, corners once
+  IndexLists<4> lathe;           ///< cubics of (radius, y, anything) that are turned about the y axis; see revolve()
+  double crease_angle = kPatchCreaseAngle;  ///< degrees
+  bool flip = false;                        ///< turned inside out
+  DegenerateNormal degenerate_normals = DegenerateNormal::limit;
+};
 struct SphereShape {
   Vec3d center{0, 0, 0};
   double radius = 1;
@@ -282,8 +308,8 @@ struct ScatterShape {
   double clearing_size = 1;
   std::uint32_t seed = 1980;
 };
-using ShapeKind = std::variant<MeshShape, SphereShape, PlaneShape, DiscShape, ConeShape, TerrainShape, SphereFlakeShape,
-                               TreeShape, InstanceShape, ScatterShape>;
+using ShapeKind = std::variant<MeshShape, PatchesShape, SphereShape, PlaneShape, DiscShape, ConeShape, TerrainShape,
+                               SphereFlakeShape, TreeShape, InstanceShape, ScatterShape>;
 
 struct ShapeDescription {
   std::string name;

@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/facet_pattern.h"
 #include "renderer/builtin_materials.h"
 #include "renderer/scene_description.h"
 
@@ -114,6 +115,15 @@ struct EnumTable<NormalSource> {
        {E::flat, "flat", "the face's own"}}};
 };
 template <>
+struct EnumTable<DegenerateNormal> {
+  using E = DegenerateNormal;
+  static constexpr std::array<EnumEntry<E>, 4> entries{
+      {{E::limit, "limit", "the limit of the normals that lie inside the patch"},
+       {E::first_order, "first_order", "first-order expansion of P_u x P_v toward the inside, as OpenSubdiv has it"},
+       {E::gouraud, "gouraud", "the cross product of the two boundaries' tangents, Gouraud 1971, p. 27-28"},
+       {E::none, "none", "nothing: the mean normal of the patch"}}};
+};
+template <>
 struct EnumTable<TreeSpecies> {
   using E = TreeSpecies;
   static constexpr std::array<EnumEntry<E>, 2> entries{
@@ -169,6 +179,13 @@ template <>
 struct Alternative<MeshShape> {
   static constexpr std::string_view name = "mesh",
                                     text = "polygons from `file`, or given here as `positions` and `faces`";
+};
+template <>
+struct Alternative<PatchesShape> {
+  static constexpr std::string_view name = "patches",
+                                    text =
+                                        "bicubic Bezier patches and Coons patches, rational ones too, from `file`, or "
+                                        "given here as `positions` and lists of indices";
 };
 template <>
 struct Alternative<SphereShape> {
@@ -294,6 +311,22 @@ void visit_fields(Visitor& visit, T& adaptive) {
         adaptive.minimum_level);
 }
 
+template <class Visitor, Is<TessellationSettings> T>
+void visit_fields(Visitor& visit, T& tessellation) {
+  visit(
+      Field{.key = "tolerance",
+            .text = "How far facets may lie off the limit surface as the camera sees it, in the picture; four times as "
+                    "far along the line of sight and where the frame does not reach. Normals may be off by what a "
+                    "shift of as many pixels turns them, or a pixel by 4/255",
+            .unit = "pixels",
+            .range = kPositive},
+      tessellation.tolerance);
+  visit(Field{.key = "rate",
+              .text = "Segments that every edge of a surface is cut in; 0: as many as the tolerance asks for",
+              .range = {0, kLargestRate}},
+        tessellation.rate);
+}
+
 template <class Visitor, Is<RenderSettings> T>
 void visit_fields(Visitor& visit, T& render) {
   visit(Field{.key = "depth", .text = "Levels of the ray tree; the eye ray is level 1", .range = {1, 1'000'000}},
@@ -331,6 +364,7 @@ void visit_fields(Visitor& visit, T& render) {
                       "behind takes one each",
               .range = {1, kMaxRoughSamples}},
         render.rough_samples);
+  visit(Field{.key = "tessellation", .text = "How finely curved surfaces are cut in triangles"}, render.tessellation);
 }
 
 template <class Visitor, Is<CameraDescription> T>
@@ -643,6 +677,46 @@ void visit_fields(Visitor& visit, T& mesh) {
   visit.inlined(mesh);
 }
 
+template <class Visitor, Is<PatchesShape> T>
+void visit_fields(Visitor& visit, T& patches) {
+  visit(Field{.key = "file",
+              .text = "A .bpt file, relative to the folder of the scene file; its axes are kept (the published tea set "
+                      "has z up)",
+              .absent = "positions and patches are given here"},
+        patches.file);
+  visit(Field{.key = "positions", .text = "Control points, for all patches", .unit = "scene units"}, patches.positions);
+  visit(Field{.key = "weights",
+              .text = "One a position; where they differ patches are rational",
+              .range = kPositive,
+              .absent = "all 1"},
+        patches.weights);
+  visit(
+      Field{.key = "bezier",
+            .text = "Bicubic Bezier patches: 16 zero-based indices into positions each, four rows along u; outside is "
+                    "where u turns to v counter-clockwise"},
+      patches.bezier);
+  visit(Field{.key = "coons",
+              .text = "Bilinearly blended Coons patches: 12 indices each, once around four cubic Bezier curves that "
+                      "share their ends, counter-clockwise from outside, from (u, v) = (0, 0) along u"},
+        patches.coons);
+  visit(
+      Field{.key = "lathe",
+            .text = "Surfaces of revolution about the y axis: 4 indices each, of a cubic Bezier curve through (radius, "
+                    "y, anything); exact circles. Outside is to the right of the curve's way"},
+      patches.lathe);
+  visit(Field{.key = "crease_angle",
+              .text = "Where the normals of two patches differ by more than this along a common edge, each keeps its "
+                      "own; a wider angle makes both take one's, which shows",
+              .unit = "degrees",
+              .range = {0, 180}},
+        patches.crease_angle);
+  visit(Field{.key = "flip", .text = "Whether inside and outside are exchanged"}, patches.flip);
+  visit(Field{.key = "degenerate_normals",
+              .text =
+                  "The normal where that of a patch vanishes because an edge is a point or the partials are parallel"},
+        patches.degenerate_normals);
+}
+
 template <class Visitor, Is<SphereShape> T>
 void visit_fields(Visitor& visit, T& sphere) {
   visit(Field{.key = "center", .text = "Center", .unit = "scene units"}, sphere.center);
@@ -802,11 +876,11 @@ void visit_fields(Visitor& visit, T& scene) {
 
 /// A struct with a table.
 template <class T>
-concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, RenderSettings> ||
-    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, StripesPattern> ||
-    Is<T, NoisePattern> || Is<T, BumpDescription> || Is<T, AngleWeight> || Is<T, HighlightDescription> ||
-    Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> || Is<T, GroupDescription> ||
-    Is<T, TransformStep> || Is<T, SceneDescription>;
+concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, TessellationSettings> ||
+    Is<T, RenderSettings> || Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> ||
+    Is<T, StripesPattern> || Is<T, NoisePattern> || Is<T, BumpDescription> || Is<T, AngleWeight> ||
+    Is<T, HighlightDescription> || Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> ||
+    Is<T, GroupDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.
 template <class T>
@@ -815,6 +889,14 @@ concept Named = requires(T& t) {
 }
 &&(Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, MaterialDescription> || Is<T, ShapeDescription> ||
    Is<T, GroupDescription>);
+
+/// Lists of so and so many indices each.
+template <class T>
+inline constexpr std::size_t index_list_count = 0;
+template <std::size_t Count>
+inline constexpr std::size_t index_list_count<IndexLists<Count>> = Count;
+template <class T>
+inline constexpr bool is_index_lists = index_list_count<T> > 0;
 
 /// What a named element is called in messages: "material" of "materials".
 template <Named T>

@@ -347,6 +347,23 @@ class SchemaWriter {
         },
         field.key == "faces" ? 1 : 0);
   }
+  void schema(const Field& field, const std::vector<double>&) {
+    list([&] {
+      type("number");
+      bounds(field.range);
+    });
+  }
+  template <std::size_t Count>
+  void schema(const Field&, const IndexLists<Count>&) {
+    list([&] {
+      list(
+          [&] {
+            type("integer");
+            bounds(kIndexRange);
+          },
+          Count, Count);
+    });
+  }
   void schema(const Field&, const std::vector<FaceGroup>&) {
     list([&] { object(FaceGroup{}); });
   }
@@ -461,6 +478,8 @@ class ReferenceWriter {
       return "list of `[x, y, z]`";
     if constexpr (std::same_as<T, std::vector<Vec2f>>) return "list of `[u, v]`";
     if constexpr (std::same_as<T, FaceLists>) return "list of `[i, j, k, ...]`";
+    if constexpr (std::same_as<T, std::vector<double>>) return "list of numbers";
+    if constexpr (is_index_lists<T>) return "lists of " + std::to_string(index_list_count<T>) + " whole numbers";
     if constexpr (std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>>)
       return "list of objects";
     if constexpr (requires(const T& list) { noun_of<typename T::value_type>(); }) return "objects by name";
@@ -499,7 +518,7 @@ class ReferenceWriter {
   static std::string range_text(const Field& field, const T&) {
     std::string text;
     if constexpr (std::integral<T> || std::floating_point<T> || std::same_as<T, Rgb> || std::same_as<T, ColorPattern> ||
-                  std::same_as<T, std::optional<ColorPattern>>) {
+                  std::same_as<T, std::optional<ColorPattern>> || std::same_as<T, std::vector<double>>) {
       if constexpr (std::same_as<T, bool>) return text;
       if (field.range.low > -kLargestNumber)
         text = (field.range.low_open ? "> " : ">= ") + number_text(field.range.low);
@@ -564,6 +583,8 @@ std::string scene_reference() {
   out.table("render", "How the picture is traced.", RenderSettings{});
   out.table("render.adaptive", "The anti-aliasing of Whitted 1980, sec. 3: `\"antialias\": \"whitted\"`.",
             AdaptiveSampling{});
+  out.table("render.tessellation", "What curved surfaces become: triangles, no more than the view needs.",
+            TessellationSettings{});
   out.alternatives("background", Background{});
   out.table("cameras.NAME", "One camera.", CameraDescription{});
   out.table("lights.NAME", "One light; these keys and those of its type.", LightDescription{});

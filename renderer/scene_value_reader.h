@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -197,6 +198,15 @@ inline void read(const Place& at, const Field& field, JsonValue value, ScaleFact
     read_components(at, field, value, 3, "[x, y, z] or one number for all three",
                     [&](int i, double x) { out.value[i] = x; });
   if (out.value.x == 0 || out.value.y == 0 || out.value.z == 0) at.fail(value.line(), "a factor must not be 0");
+}
+
+template <std::size_t Count>
+void read(const Place& at, const Field&, JsonValue value, std::array<std::uint32_t, Count>& out) {
+  if (value.kind() != JsonKind::array || value.size() != Count)
+    at.fail(value.line(), "expected " + std::to_string(Count) + " indices, not " + description_of(value));
+  const Field index_field{.range = {0, 4294967295.0}};
+  std::size_t count = 0;
+  value.for_each_element([&](JsonValue index) { read(at, index_field, index, out[count++]); });
 }
 
 /// A list of what can be read; nothing is asked of its length.

@@ -47,7 +47,8 @@ class SceneValueWriter {
     else if constexpr (std::same_as<T, FaceLists>)
       return member.sizes.empty();
     else if constexpr (std::same_as<T, std::vector<Vec3f>> || std::same_as<T, std::vector<Vec2f>> ||
-                       std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>>)
+                       std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>> ||
+                       std::same_as<T, std::vector<Vec3d>> || std::same_as<T, std::vector<double>> || is_index_lists<T>)
       return member.empty();
     else if constexpr (std::same_as<T, Matrix44d>)
       return member == Matrix44d();
@@ -100,6 +101,12 @@ class SceneValueWriter {
   void write(const std::vector<T>& list) {
     out_.begin_array(JsonWriter::Layout::lines);
     for (const T& element : list) write(element);
+    out_.end_array();
+  }
+  template <std::size_t Count>
+  void write(const std::array<std::uint32_t, Count>& indices) {
+    out_.begin_array();
+    for (const std::uint32_t index : indices) out_.value(index);
     out_.end_array();
   }
   void write(const FaceLists& faces) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "geometry/instance_transform.h"
@@ -29,6 +30,9 @@ Bounds3d transformed_bounds(const Bounds3d& box, const Matrix44d& m) {
         m));
   return result;
 }
+
+constexpr const char* kTooManyInstances =
+    "the groups within groups of this scene come to more than 50 million instances";
 
 /// A group in a space of its own.
 struct GroupAssembly {
@@ -60,10 +64,27 @@ class GroupAssembler {
     done_.resize(groups_.size(), false);
   }
 
-  /// Assembles what `uses` refer to. Cycles must have been refused.
+  /// Assembles what the scene's own shapes use, `uses`, directly or through groups: each group after all that use it,
+  /// so that its curved shapes know where they stand. Cycles must have been refused. `uses` must outlive the assembler.
   void assemble(const std::vector<ShapeList::Use>& uses) {
-    for (const ShapeList::Use& use : uses)
-      if (!done_[use.group]) assemble(use.group);
+    scene_uses_ = &uses;
+    std::vector<bool> reached(groups_.size(), false);
+    const auto reach = [&](const std::vector<ShapeList::Use>& list) {
+      for (const ShapeList::Use& use : list) reached[use.group] = true;
+    };
+    reach(uses);
+    const std::vector<std::uint32_t> order = users_first();
+    for (const std::uint32_t index : order) {
+      if (!reached[index]) continue;
+      assemble(index);
+      reach(groups_[index].uses);
+    }
+    for (auto index = order.rbegin(); index != order.rend(); ++index) {
+      GroupAssembly& group = groups_[*index];
+      group.uses_in_all = group.has_shapes ? 1 : 0;
+      for (const ShapeList::Use& use : group.uses)
+        group.uses_in_all = std::min(group.uses_in_all + groups_[use.group].uses_in_all, 2 * kMostInstances);
+    }
   }
 
   /// Calls function(group index, transform) for each group with shapes that `use` comes to.
@@ -77,8 +98,7 @@ class GroupAssembler {
   /// How many uses with shapes `use` comes to, all others of the scene being `before`.
   std::uint64_t checked_count(const ShapeList::Use& use, std::uint64_t before, const SourceLocation& where) const {
     const std::uint64_t count = groups_[use.group].uses_in_all;
-    require(count <= kMostInstances && before + count <= kMostInstances,
-            "the groups within groups of this scene come to more than 50 million instances", where);
+    require(count <= kMostInstances && before + count <= kMostInstances, kTooManyInstances, where);
     return count;
   }
 
@@ -97,8 +117,15 @@ class GroupAssembler {
     done_[index] = true;
     GroupAssembly& group = groups_[index];
     std::vector<ShapeSummary>& shapes = summaries_[index].shapes;
+    const ListPlaces places = [&](const std::function<void(const Matrix44d&)>& function) {
+      std::uint64_t count = 0;  // groups in groups may come to more than anyone can wait for
+      for_each_place(index, [&](const Matrix44d& place) {
+        require(++count <= kMostInstances, kTooManyInstances, description_.groups[index].where);
+        function(place);
+      });
+    };
     ShapeList list = assemble_list(description_.groups[index].shapes, first_shapes_[index], description_,
-                                   mesh_materials_, options_, warnings_, shapes);
+                                   mesh_materials_, places, options_, warnings_, shapes);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       shapes[i].id = 0;
       shapes[i].material = description_.groups[index].shapes[i].material;
@@ -111,10 +138,31 @@ class GroupAssembler {
     group.origin = scene_origin(group.bounds);
     move_to_space(list, group.origin, group.shapes);
     group.uses = std::move(list.uses);
-    assemble(group.uses);
-    group.uses_in_all = group.has_shapes ? 1 : 0;
-    for (const ShapeList::Use& use : group.uses)
-      group.uses_in_all = std::min(group.uses_in_all + groups_[use.group].uses_in_all, 2 * kMostInstances);
+  }
+
+  /// All groups, each before those that it uses.
+  std::vector<std::uint32_t> users_first() const {
+    std::vector<std::uint32_t> order;
+    std::vector<bool> seen(groups_.size(), false);
+    const std::function<void(std::uint32_t)> visit = [&](std::uint32_t index) {
+      if (seen[index]) return;
+      seen[index] = true;
+      for (const ShapeDescription& shape : description_.groups[index].shapes)
+        if (const std::string& used = group_used_by(shape); !used.empty()) visit(group_index(description_, used));
+      order.push_back(index);
+    };
+    for (std::uint32_t i = 0; i < groups_.size(); ++i) visit(i);
+    std::reverse(order.begin(), order.end());
+    return order;
+  }
+
+  /// Calls function(transform to the world) for each use of a group whose users are assembled.
+  void for_each_place(std::uint32_t group, const std::function<void(const Matrix44d&)>& function) const {
+    for (const ShapeList::Use& use : *scene_uses_)
+      if (use.group == group) function(use.transform);
+    for (std::uint32_t i = 0; i < groups_.size(); ++i)
+      for (const ShapeList::Use& use : groups_[i].uses)
+        if (use.group == group) for_each_place(i, [&](const Matrix44d& place) { function(use.transform * place); });
   }
 
   template <class Function>
@@ -133,6 +181,7 @@ class GroupAssembler {
   std::vector<GroupSummary> summaries_;
   std::vector<ShapeId> first_shapes_;
   std::vector<bool> done_;
+  const std::vector<ShapeList::Use>* scene_uses_ = nullptr;
 };
 
 /// `transform` takes the group's own space to scene space.
@@ -213,7 +262,7 @@ ShapeSet assemble_shapes(SceneDescription& description, const Vec3d& eye, const 
   });
   MeshMaterials mesh_materials(description, warnings);
   ShapeList assembly =
-      assemble_list(description.shapes, 0, description, mesh_materials, options, warnings, summary.shapes);
+      assemble_list(description.shapes, 0, description, mesh_materials, {}, options, warnings, summary.shapes);
   // Uses in the order of the shapes, whichever kind came first.
   std::stable_sort(assembly.uses.begin(), assembly.uses.end(),
                    [](const ShapeList::Use& a, const ShapeList::Use& b) { return a.shape < b.shape; });

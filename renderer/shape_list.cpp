@@ -13,11 +13,15 @@
 #include <utility>
 
 #include "geometry/mesh_file.h"
+#include "geometry/patch_surface.h"
 #include "geometry/terrain.h"
+#include "geometry/tessellation.h"
 #include "geometry/tree.h"
 #include "geometry/triangulation.h"
 #include "geometry/vertex_normals.h"
+#include "renderer/camera.h"
 #include "renderer/groups.h"
+#include "renderer/patch_shape.h"
 #include "renderer/scatter.h"
 
 namespace raytree {
@@ -127,9 +131,9 @@ void apply_normal_source(PolygonMesh& mesh, const MeshShape& shape, const Source
 /// Fills the assembly of one list of shapes.
 class Assembler {
  public:
-  Assembler(const SceneDescription& scene, MeshMaterials& mesh_materials, const PrepareOptions& options,
-            Warnings& warnings)
-      : scene_(scene), mesh_materials_(mesh_materials), options_(options), warnings_(warnings) {}
+  Assembler(const SceneDescription& scene, MeshMaterials& mesh_materials, const ListPlaces& places,
+            const PrepareOptions& options, Warnings& warnings)
+      : scene_(scene), mesh_materials_(mesh_materials), places_(places), options_(options), warnings_(warnings) {}
 
   ShapeList assembly;
 
@@ -168,6 +172,14 @@ class Assembler {
     assembly.meshes.push_back({std::move(mesh), id});
   }
 
+  /// What every curved shape becomes; `surface` lies in the shape's space.
+  void add_surface(const ParametricSurface& surface, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    begin_phase("tessellating " + shape.name);
+    const SurfaceTessellation tessellation(scene_, chosen_camera(scene_, options_.camera),
+                                           options_.measure_tessellation);
+    add_mesh(tessellation.make(surface, shape, places_, summary, warnings_), shape, id, summary);
+  }
+
   void add_kind(MeshShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "mesh";
     std::shared_ptr<PolygonMesh> mesh = std::move(kind.mesh);
@@ -190,6 +202,15 @@ class Assembler {
     const std::vector<FaceGroup> groups = std::move(mesh->groups);
     add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
     tag_materials(groups, group_materials, assembly.meshes.back(), summary);
+  }
+
+  void add_kind(PatchesShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    summary.kind = "patches";
+    begin_phase("preparing " + shape.name);
+    const PatchSurface surface(surface_patches(kind, scene_.folder, shape.where, warnings_), surface_options(kind),
+                               shape.where, warnings_);
+    summary.faces_by_size[1] = static_cast<std::int64_t>(surface.face_count());
+    add_surface(surface, shape, id, summary);
   }
 
   /// Gives each triangle the material of its face's group.
@@ -324,6 +345,7 @@ class Assembler {
   ShapeId first_ = 0;
   const SceneDescription& scene_;
   MeshMaterials& mesh_materials_;
+  const ListPlaces& places_;
   const PrepareOptions& options_;
   Warnings& warnings_;
 };
@@ -331,9 +353,9 @@ class Assembler {
 }  // namespace
 
 ShapeList assemble_list(std::vector<ShapeDescription>& shapes, ShapeId first, const SceneDescription& scene,
-                        MeshMaterials& mesh_materials, const PrepareOptions& options, Warnings& warnings,
-                        std::vector<ShapeSummary>& summaries) {
-  Assembler assembler(scene, mesh_materials, options, warnings);
+                        MeshMaterials& mesh_materials, const ListPlaces& places, const PrepareOptions& options,
+                        Warnings& warnings, std::vector<ShapeSummary>& summaries) {
+  Assembler assembler(scene, mesh_materials, places, options, warnings);
   assembler.add_all(shapes, first, summaries);
   return std::move(assembler.assembly);
 }

@@ -11,6 +11,7 @@
 #include "renderer/mesh_materials.h"
 #include "renderer/scene.h"
 #include "renderer/scene_description.h"
+#include "renderer/surface_tessellation.h"
 
 namespace raytree {
 
@@ -54,10 +55,10 @@ struct ShapeList {
 };
 
 /// Assembles `shapes`, which are ShapeId `first` and following ones, and consumes their meshes; `scene` is what they
-/// belong to. Throws Error (bad_input).
+/// belong to, `places` where the list stands in the world. Throws Error (bad_input).
 ShapeList assemble_list(std::vector<ShapeDescription>& shapes, ShapeId first, const SceneDescription& scene,
-                        MeshMaterials& mesh_materials, const PrepareOptions& options, Warnings& warnings,
-                        std::vector<ShapeSummary>& summaries);
+                        MeshMaterials& mesh_materials, const ListPlaces& places, const PrepareOptions& options,
+                        Warnings& warnings, std::vector<ShapeSummary>& summaries);
 
 /// Moves all but planes and uses to a space that begins at `origin`.
 void move_to_space(ShapeList& list, const Vec3d& origin, BoundedShapes& shapes);

@@ -205,6 +205,9 @@ TEST(CommandLineErrors, ScenesThatAreNone) {
   expect_bad_input({"info", folder.path("broken.json")}, {"broken.json:3", "colour"});
   expect_bad_input({"info", folder.path("brokn.json")}, {"did you mean broken.json?"});
   expect_bad_input({"info", folder.path("empty.obj")}, {"empty.obj"});
+  write_text(folder.path("broken.bpt"), "1\n1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,0\n1\n0,0,0\n");
+  expect_bad_input({"info", folder.path("broken.bpt")}, {"broken.bpt:2", "index 2 is out of range"});
+  expect_bad_input({"render", folder.path("borken.bpt"), "-o", folder.path("a.png")}, {"did you mean broken.bpt?"});
   expect_bad_input({"info", folder.path("")}, {"folder"});
 }
 
@@ -251,6 +254,21 @@ TEST(CommandLineLists, OcioListsAndChecksTheBuiltInConfig) {
     EXPECT_TRUE(contains(check.out, value)) << value << "\n" << check.out;
   EXPECT_FALSE(contains(check.out, "OFF"));
   EXPECT_EQ(run_program({"ocio", "check", "--ocio", "builtin"}).status, 0);
+}
+
+TEST(CommandLineInfo, BarePatchesStandUpright) {
+  TemporaryFolder folder;
+  // A square in the plane y = 0 of the file, 3 wide and 6 high along z.
+  std::string text = "1\n3 3\n";
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) text += std::to_string(i) + " 0 " + std::to_string(2 * j) + "\n";
+  write_text(folder.path("square.bpt"), text);
+  const ProgramResult result = run_program({"info", folder.path("square.bpt"), "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json info = Json::parse(result.out);
+  EXPECT_EQ(info["objects"][0]["kind"], "patches");
+  EXPECT_EQ(info["totals"]["faces"]["quads"], 1);
+  EXPECT_EQ(info["objects"][0]["bounds"]["max"], Json({3.0, 6.0, 0.0}));
 }
 
 TEST(CommandLineInfo, SaysWhatIsInAScene) {

@@ -16,6 +16,10 @@ inline bool equal(const AdaptiveSampling& a, const AdaptiveSampling& b) {
   const auto& [threshold, levels, minimum] = a;
   return threshold == b.threshold && levels == b.levels && minimum == b.minimum_level;
 }
+inline bool equal(const TessellationSettings& a, const TessellationSettings& b) {
+  const auto& [tolerance, rate] = a;
+  return tolerance == b.tolerance && rate == b.rate;
+}
 inline bool equal(const ImageDescription& a, const ImageDescription& b) {
   const auto& [width, height] = a;
   return width == b.width && height == b.height;
@@ -27,11 +31,11 @@ inline bool equal(const CameraDescription& a, const CameraDescription& b) {
 }
 inline bool equal(const RenderSettings& a, const RenderSettings& b) {
   const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, transparent, shadowed, fresnel, attenuation,
-               rough_samples] = a;
+               rough_samples, tessellation] = a;
   return depth == b.depth && cutoff == b.cutoff && equal(antialias, b.antialias) && equal(adaptive, b.adaptive) &&
          highlights == b.highlights && shadows == b.shadows && transparent == b.transparent_shadows &&
          shadowed == b.shadowed_highlights && fresnel == b.fresnel && attenuation == b.distance_attenuation &&
-         rough_samples == b.rough_samples;
+         rough_samples == b.rough_samples && equal(tessellation, b.tessellation);
 }
 inline bool equal(const ConstantBackground& a, const ConstantBackground& b) {
   const auto& [color] = a;
@@ -100,6 +104,11 @@ inline bool equal(const MeshShape& a, const MeshShape& b) {
   const auto& [file, normals, angle, mesh] = a;
   return file == b.file && normals == b.normals && angle == b.crease_angle && !mesh == !b.mesh &&
          (!mesh || equal(*mesh, *b.mesh));
+}
+inline bool equal(const PatchesShape& a, const PatchesShape& b) {
+  const auto& [file, positions, weights, bezier, coons, lathe, angle, flip, normals] = a;
+  return file == b.file && positions == b.positions && weights == b.weights && bezier == b.bezier && coons == b.coons &&
+         lathe == b.lathe && angle == b.crease_angle && flip == b.flip && normals == b.degenerate_normals;
 }
 inline bool equal(const SphereShape& a, const SphereShape& b) {
   const auto& [center, radius] = a;

@@ -28,7 +28,8 @@ TEST(SceneFields, TablesHoldEveryMember) {
     return counter.count;
   };
   EXPECT_EQ(count(ImageDescription{}), 2);
-  EXPECT_EQ(count(RenderSettings{}), 11);
+  EXPECT_EQ(count(RenderSettings{}), 12);
+  EXPECT_EQ(count(TessellationSettings{}), 2);
   EXPECT_EQ(count(AdaptiveSampling{}), 3);
   EXPECT_EQ(count(CameraDescription{}), 7 - 1) << "without name";
   EXPECT_EQ(count(ConstantBackground{}), 1);
@@ -47,6 +48,7 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(FaceGroup{}), 4);
   EXPECT_EQ(count(MeshShape{}), 4);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";
+  EXPECT_EQ(count(PatchesShape{}), 9);
   EXPECT_EQ(count(SphereShape{}), 2);
   EXPECT_EQ(count(PlaneShape{}), 2);
   EXPECT_EQ(count(DiscShape{}), 3);

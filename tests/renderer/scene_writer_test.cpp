@@ -121,6 +121,21 @@ class Randomizer {
     x.reset();
     if (whole(0, 1) == 0) fill(field, x.emplace());
   }
+  void fill(const Field& field, std::vector<Vec3d>& list) {
+    list.resize(4);
+    // A radius of a lathe must not be negative.
+    for (Vec3d& x : list) x = {number({0}), number(field.range), number(field.range)};
+  }
+  void fill(const Field& field, std::vector<double>& list) {
+    list.assign(4, 0);
+    for (double& x : list) x = number(field.range) + 1e-3;
+  }
+  template <std::size_t Count>
+  void fill(const Field&, IndexLists<Count>& lists) {
+    lists.resize(static_cast<std::size_t>(whole(1, 3)));
+    for (auto& list : lists)
+      for (std::uint32_t& index : list) index = static_cast<std::uint32_t>(whole(0, 3));
+  }
   void fill(const Field&, Background& x) { tagged({}, x); }
   void fill(const Field&, MaterialBase&) {}
   void fill(const Field&, std::vector<AngleWeight>& table) {
@@ -179,6 +194,14 @@ TEST(WriteScene, ReadsBackEqual) {
         shape.material = i == 0 ? "" : scene.materials.at(i).name;
         if (auto* mesh = std::get_if<MeshShape>(&shape.kind); mesh && mesh->file.empty() && !mesh->mesh)
           mesh->file = "x.ply";
+        if (auto* patches = std::get_if<PatchesShape>(&shape.kind)) {
+          // Either a file or what follows it.
+          if (i % 2 == 0)
+            patches->file.clear();
+          else
+            patches->positions.clear(), patches->weights.clear(), patches->bezier.clear(), patches->coons.clear(),
+                patches->lathe.clear();
+        }
         if (std::holds_alternative<PlaneShape>(shape.kind) && next_group > 0) shape.kind = TerrainShape{};
         if (auto* scatter = std::get_if<ScatterShape>(&shape.kind)) {
           shapes[(i + 1) % shapes.size()].kind = TerrainShape{};

@@ -1,0 +1,153 @@
+// How far flat facets with interpolated normals stray from the surface that they stand for, at sampled points.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/parametric_surface.h"
+#include "geometry/tessellation_view.h"
+#include "geometry/vec.h"
+
+namespace raytree {
+
+struct FacetDeviation {
+  double pixels = 0;    ///< distance to the limit surface, as TessellationView weighs it
+  double distance = 0;  ///< the same in the surface's units, in any direction
+  /// Between the normals, radians; 0 for facets without an edge of kShortestShadedEdge.
+  double angle = 0;
+  /// The same in pixels: see kTurnPerPixel.
+  double shading = 0;
+
+  void include(const FacetDeviation& other) {
+    pixels = std::max(pixels, other.pixels);
+    distance = std::max(distance, other.distance);
+    angle = std::max(angle, other.angle);
+    shading = std::max(shading, other.shading);
+  }
+};
+
+/// Radians. A normal that is off by an angle shades as if its point were off by some pixels: by the angle over what the
+/// normal turns in a pixel, along the facet's edge where it turns most; so what moves a highlight by as much as facets
+/// may lie off anyway is no fault. And where it hardly turns by this instead: turning a normal by a changes Lambert's
+/// cosine by at most a, so that the default tolerance of 1/4 pixel lets shades differ by one level of 255.
+inline constexpr double kTurnPerPixel = 4.0 / 255;
+
+/// Normals of facets all of whose edges look shorter than this, in pixels, are not judged: less than a pixel's mean
+/// hangs on them, and where a surface has a tip no facet is small enough.
+inline constexpr double kShortestShadedEdge = 1;
+
+/// The point of the triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
+inline Vec3d nearest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 > 0 ? d1 / (d1 - d3) : 0);
+  const Vec3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 > 0 ? d2 / (d2 - d6) : 0);
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  const double denominator = va + vb + vc;
+  return denominator > 0 ? a + ab * (vb / denominator) + ac * (vc / denominator) : a;
+}
+
+/// Where a facet ends.
+struct FacetCorner {
+  Vec3d position;  ///< in the surface's space, less its origin
+  Vec3d normal;
+};
+
+class SampledFacet {
+ public:
+  /// hard: whether the surface ends, or bends sharply, at the edge from corner i to the next.
+  SampledFacet(const TessellationView& view, const Vec3d& origin, const std::array<FacetCorner, 3>& corners,
+               const std::array<bool, 3>& hard)
+      : view_(view), origin_(origin), corners_(corners), hard_(hard) {
+    double longest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const FacetCorner &a = corners[i], &b = corners[(i + 1) % 3];
+      const double pixels = view.pixels(origin + a.position, b.position - a.position);
+      longest = std::max(longest, pixels);
+      if (pixels > 0) turn_ = std::max(turn_, (b.normal - a.normal).length() / pixels);
+    }
+    shaded_ = longest >= kShortestShadedEdge;
+    normal_ = (corners[1].position - corners[0].position).cross(corners[2].position - corners[0].position);
+    const double length = normal_.length();
+    if (length > 0) normal_ /= length;
+    for (const FacetCorner& corner : corners) bend_ = std::max(bend_, 2 * normal_.cross(corner.normal).length());
+    bend_ = length > 0 ? std::min(bend_, 1.0) : 1;
+  }
+
+  /// At the surface's point of barycentric coordinates `weights` in the face's parameters.
+  FacetDeviation at(const SurfaceSample& truth, const std::array<double, 3>& weights) const {
+    const Vec3d p(truth.position);
+    const Vec3d away = displacement(p);
+    FacetDeviation deviation;
+    deviation.pixels = view_.pixels(origin_ + p, away);
+    deviation.distance = away.length();
+    if (shaded_) {
+      const Vec3d normal =
+          corners_[0].normal * weights[0] + corners_[1].normal * weights[1] + corners_[2].normal * weights[2];
+      const Vec3d expected(truth.normal);
+      const double across = normal.cross(expected).length(), along = normal.dot(expected);
+      const double tangent = across / along;
+      // atan x = x - x^3 / 3 + O(x^5): to 2e-7 of itself below this.
+      constexpr double kSmall = 0.03;
+      deviation.angle = along > 0 && tangent < kSmall ? tangent * (1 - tangent * tangent / 3) : std::atan2(across, along);
+      deviation.shading = deviation.angle / std::max(kTurnPerPixel, turn_);
+    }
+    return deviation;
+  }
+
+ private:
+  /// From the limit surface to the tessellation. Parameters stretch, so that a point may lie beside its own facet: then
+  /// over the next one, which is turned against this one by no more than the normals at the corners say, and only so
+  /// much of the way back counts; but at a hard edge there is no next one.
+  Vec3d displacement(const Vec3d& p) const {
+    const Vec3d &a = corners_[0].position, &b = corners_[1].position, &c = corners_[2].position;
+    const Vec3d whole = nearest_on_triangle(p, a, b, c) - p;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d& from = corners_[i].position;
+      const Vec3d& to = corners_[(i + 1) % 3].position;
+      if (hard_[i] && (to - from).cross(p - from).dot(normal_) < 0) return whole;
+    }
+    const Vec3d across = normal_ * whole.dot(normal_);
+    return across + (whole - across) * bend_;
+  }
+
+  const TessellationView& view_;
+  Vec3d origin_;
+  std::array<FacetCorner, 3> corners_;
+  std::array<bool, 3> hard_;
+  Vec3d normal_;     ///< of the facet, unit; zero for one without area
+  double bend_ = 0;  ///< sine of the angle that the next facet may be turned by
+  double turn_ = 0;  ///< of the normal, largest, radians a pixel
+  bool shaded_ = true;
+};
+
+/// Which pieces of a face's boundary are hard: [boundary points], the piece from each point to the next.
+inline void find_hard_pieces(std::span<const FaceEdge> sides, std::span<const std::uint16_t> rates,
+                             std::vector<std::uint8_t>& hard) {
+  hard.clear();
+  for (std::size_t i = 0; i < sides.size(); ++i) hard.insert(hard.end(), rates[i], sides[i].sharp_edge ? 1 : 0);
+}
+inline std::array<bool, 3> hard_edges(const std::uint32_t* facet, const std::vector<std::uint8_t>& hard) {
+  std::array<bool, 3> result{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::uint32_t a = facet[i], b = facet[(i + 1) % 3];
+    result[i] = a < hard.size() && b == (a + 1) % hard.size() && hard[a] != 0;
+  }
+  return result;
+}
+
+}  // namespace raytree

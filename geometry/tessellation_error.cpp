@@ -1,0 +1,139 @@
+#include "geometry/tessellation_error.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "geometry/facet_pattern.h"
+
+namespace raytree {
+namespace {
+
+using Weights = std::array<double, 3>;
+constexpr std::size_t kFacetsAtOnce = 128;
+
+/// Quarters of a facet's edges and inside, but for its corners: barycentric coordinates.
+constexpr std::array<Weights, kSamplesPerFacet> sample_weights() {
+  std::array<Weights, kSamplesPerFacet> weights{};
+  std::size_t count = 0;
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < 4 && a + b <= 4; ++b)
+      if (a + b > 0) weights[count++] = {a / 4.0, b / 4.0, (4 - a - b) / 4.0};
+  return weights;
+}
+constexpr std::array<Weights, kSamplesPerFacet> kWeights = sample_weights();
+
+/// Triangles [begin, end) of one face, which start at `first` in the mesh; facets: the pattern's, as the mesh has them.
+FacetDeviation measure(const ParametricSurface& surface, std::size_t face, const FacetPattern& pattern,
+                       const std::vector<std::uint32_t>& facets, const std::vector<std::uint8_t>& hard,
+                       const TriangleMesh& mesh, std::size_t first, std::size_t begin, std::size_t end,
+                       const TessellationView& view) {
+  const std::size_t sides = surface.sides(face).size();
+  const FaceDomain domain = surface.domain(face);
+  std::vector<Vec2f> parameters((end - begin) * kSamplesPerFacet);
+  std::vector<SurfaceSample> samples(parameters.size());
+  for (std::size_t f = begin; f < end; ++f) {
+    const std::uint32_t* corners = &facets[3 * f];
+    parameters_in_facet(
+        domain, sides, {pattern.parameters[corners[0]], pattern.parameters[corners[1]], pattern.parameters[corners[2]]},
+        kWeights, &parameters[(f - begin) * kSamplesPerFacet]);
+  }
+  surface.evaluate(face, parameters, samples);
+  FacetDeviation largest;
+  const SurfaceSample* sample = samples.data();
+  for (std::size_t f = begin; f < end; ++f) {
+    std::array<FacetCorner, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t c = 3 * (first + f) + k;
+      corners[k] = {Vec3d(mesh.positions[mesh.corners[c]]),
+                    Vec3d(mesh.normals[mesh.normal_corners.empty() ? mesh.corners[c] : mesh.normal_corners[c]])};
+    }
+    const SampledFacet facet(view, surface.origin(), corners, hard_edges(&facets[3 * f], hard));
+    for (const Weights& weights : kWeights) largest.include(facet.at(*sample++, weights));
+  }
+  return largest;
+}
+
+bool has_collapsed_side(const ParametricSurface& surface, std::size_t face) {
+  const std::span<const FaceEdge> sides = surface.sides(face);
+  return std::any_of(sides.begin(), sides.end(), [](const FaceEdge& side) { return side.collapsed; });
+}
+
+std::vector<std::uint32_t> facets_with_area(const ParametricSurface& surface, std::size_t face,
+                                            const std::vector<std::uint16_t>& rates, const FacetPattern& pattern) {
+  std::vector<std::uint64_t> points;
+  identify_boundary(surface.sides(face), rates, points);
+  std::vector<std::uint32_t> facets;
+  for (std::size_t f = 0; f < pattern.facet_count(); ++f)
+    if (const auto* facet = &pattern.facets[3 * f]; !has_no_area(facet, points))
+      facets.insert(facets.end(), facet, facet + 3);
+  return facets;
+}
+
+FacetDeviation larger(FacetDeviation a, const FacetDeviation& b) {
+  a.include(b);
+  return a;
+}
+
+}  // namespace
+
+TessellationError measure_tessellation(const ParametricSurface& surface, const TessellationRates& rates,
+                                       const TriangleMesh& mesh, const TessellationView& view) {
+  TessellationError error;
+  FacetPatternSet patterns;
+  std::vector<std::size_t> first(surface.face_count() + 1, 0);
+  std::vector<std::uint32_t> numbers(surface.face_count(), FacetPatternSet::kNotKept);
+  std::vector<std::uint16_t> face_rates;
+  for (std::size_t face = 0; face < surface.face_count(); ++face) {
+    first[face + 1] = first[face];
+    if (surface.sides(face).empty()) continue;
+    ++error.faces;
+    rates_of_face(surface, rates, face, face_rates);
+    numbers[face] = patterns.find(surface.domain(face), face_rates);
+    if (has_collapsed_side(surface, face)) {
+      const FacetPattern pattern = make_facet_pattern(surface.domain(face), face_rates);
+      first[face + 1] += facets_with_area(surface, face, face_rates, pattern).size() / 3;
+    } else {
+      first[face + 1] += numbers[face] != FacetPatternSet::kNotKept
+                             ? patterns[numbers[face]].facet_count()
+                             : count_facets(surface.domain(face), face_rates).facets;
+    }
+  }
+  error.triangles = first.back();
+  error.samples = error.triangles * kSamplesPerFacet;
+  using Range = tbb::blocked_range<std::size_t>;
+  error.largest = tbb::parallel_reduce(
+      Range(0, surface.face_count()), FacetDeviation(),
+      [&](const Range& range, FacetDeviation largest) {
+        std::vector<std::uint16_t> own_rates;
+        for (std::size_t face = range.begin(); face != range.end(); ++face) {
+          if (surface.sides(face).empty()) continue;
+          rates_of_face(surface, rates, face, own_rates);
+          FacetPattern own;
+          if (numbers[face] == FacetPatternSet::kNotKept) own = make_facet_pattern(surface.domain(face), own_rates);
+          std::vector<std::uint8_t> hard;
+          find_hard_pieces(surface.sides(face), own_rates, hard);
+          const FacetPattern& pattern = numbers[face] == FacetPatternSet::kNotKept ? own : patterns[numbers[face]];
+          std::vector<std::uint32_t> with_area;
+          if (has_collapsed_side(surface, face)) with_area = facets_with_area(surface, face, own_rates, pattern);
+          const std::vector<std::uint32_t>& corners = has_collapsed_side(surface, face) ? with_area : pattern.facets;
+          largest.include(tbb::parallel_reduce(
+              Range(0, corners.size() / 3, kFacetsAtOnce), FacetDeviation(),
+              [&](const Range& facets, FacetDeviation so_far) {
+                for (std::size_t begin = facets.begin(); begin < facets.end(); begin += kFacetsAtOnce)
+                  so_far.include(measure(surface, face, pattern, corners, hard, mesh, first[face], begin,
+                                         std::min(facets.end(), begin + kFacetsAtOnce), view));
+                return so_far;
+              },
+              larger));
+        }
+        return largest;
+      },
+      larger);
+  return error;
+}
+
+}  // namespace raytree

@@ -1,0 +1,53 @@
+// Which hierarchy the tracer builds: a cost model of building and tracing, from the number of rays that a picture will
+// take and the memory allowed. A function of the scene, the full frame and the flags, never of threads or of a crop, so
+// that pictures do not depend on those.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/embree_intersector.h"
+#include "renderer/scene_description.h"
+
+namespace raytree {
+
+/// What was measured of one kind of hierarchy over triangles; docs/benchmarks.md says how.
+struct HierarchyCost {
+  const char* name;
+  EmbreeOptions::Quality quality;
+  bool compact;
+  double bytes;          ///< a triangle
+  double build_seconds;  ///< a million triangles, one core
+  double speed;          ///< of tracing, the balanced one's is 1
+};
+
+/// In the order of preference where times are alike.
+const std::vector<HierarchyCost>& hierarchy_costs();
+
+struct HierarchyDemand {
+  std::uint64_t primitives = 0;      ///< triangles, spheres and the like, each once however often it is used
+  double rays = 0;                   ///< expected
+  std::uint64_t memory_allowed = 0;  ///< bytes, of the hierarchy; 0: any
+};
+
+struct HierarchyChoice {
+  const HierarchyCost* chosen = nullptr;
+  std::string reason;  ///< one line for --verbose
+};
+
+/// The kind for which building and tracing together take least time, among those that fit in the memory allowed; the
+/// balanced one unless another saves kLeastSaving of the time. When none fits, the smallest.
+HierarchyChoice choose_hierarchy(const HierarchyDemand& demand);
+
+/// That of the name, e.g. "compact". Throws Error (bad_input) with the names there are.
+HierarchyChoice hierarchy_named(const std::string& name);
+
+inline constexpr double kLeastSaving = 0.2;
+
+/// Rays that a full frame takes, roughly: samples of the eye by the kind of anti-aliasing, a shadow ray a light each,
+/// and as much again where materials reflect or transmit.
+double expected_rays(const SceneDescription& scene);
+
+}  // namespace raytree
