@@ -18,13 +18,23 @@ struct Homogeneous {
   }
 };
 
+/// The four rows' sums over u; then they need be formed once for all sums over v.
 template <class Scalar>
-Homogeneous<Scalar> sum(const BezierPatch& patch, const std::array<Scalar, 4>& along_u,
-                        const std::array<Scalar, 4>& along_v) {
-  Homogeneous<Scalar> total;
+std::array<Homogeneous<Scalar>, 4> row_sums(const BezierPatch& patch, const std::array<Scalar, 4>& along_u) {
+  std::array<Homogeneous<Scalar>, 4> rows;
   for (std::size_t j = 0; j < 4; ++j)
     for (std::size_t i = 0; i < 4; ++i)
-      total.add(patch.points[4 * j + i], Scalar(patch.weights[4 * j + i]) * along_u[i] * along_v[j]);
+      rows[j].add(patch.points[4 * j + i], Scalar(patch.weights[4 * j + i]) * along_u[i]);
+  return rows;
+}
+
+template <class Scalar>
+Homogeneous<Scalar> sum(const std::array<Homogeneous<Scalar>, 4>& rows, const std::array<Scalar, 4>& along_v) {
+  Homogeneous<Scalar> total;
+  for (std::size_t j = 0; j < 4; ++j) {
+    total.x = total.x + rows[j].x * along_v[j];
+    total.w = total.w + rows[j].w * along_v[j];
+  }
   return total;
 }
 
@@ -32,10 +42,10 @@ Homogeneous<Scalar> sum(const BezierPatch& patch, const std::array<Scalar, 4>& a
 
 PatchDerivatives evaluate(const BezierPatch& patch, double u, double v) {
   const CubicBernstein<double> in_u(u), in_v(v);
-  const auto s = sum(patch, in_u.value, in_v.value);
-  const auto su = sum(patch, in_u.first, in_v.value), sv = sum(patch, in_u.value, in_v.first);
-  const auto suu = sum(patch, in_u.second, in_v.value), suv = sum(patch, in_u.first, in_v.first),
-             svv = sum(patch, in_u.value, in_v.second);
+  const auto rows = row_sums(patch, in_u.value), rows_u = row_sums(patch, in_u.first),
+             rows_uu = row_sums(patch, in_u.second);
+  const auto s = sum(rows, in_v.value), su = sum(rows_u, in_v.value), sv = sum(rows, in_v.first);
+  const auto suu = sum(rows_uu, in_v.value), suv = sum(rows_u, in_v.first), svv = sum(rows, in_v.second);
   const auto p = s.x / s.w;
   const auto pu = (su.x - p * su.w) / s.w, pv = (sv.x - p * sv.w) / s.w;
   const auto puu = (suu.x - pu * (2 * su.w) - p * suu.w) / s.w;
@@ -46,8 +56,9 @@ PatchDerivatives evaluate(const BezierPatch& patch, double u, double v) {
 
 TangentSeries tangent_series(const BezierPatch& patch, double u, double v, const Vec2d& toward) {
   const CubicBernstein<PowerSeries> in_u(PowerSeries(u, toward.x)), in_v(PowerSeries(v, toward.y));
-  const auto s = sum(patch, in_u.value, in_v.value);
-  const auto su = sum(patch, in_u.first, in_v.value), sv = sum(patch, in_u.value, in_v.first);
+  const auto rows = row_sums(patch, in_u.value);
+  const auto s = sum(rows, in_v.value), sv = sum(rows, in_v.first);
+  const auto su = sum(row_sums(patch, in_u.first), in_v.value);
   // P_u = (X_u w - X w_u) / w^2, and what is positive does not turn it: in place of w^2 its first term.
   const PowerSeries share = 1 / (s.w.c[0] * s.w.c[0]);
   return {(su.x * s.w - s.x * su.w) * share, (sv.x * s.w - s.x * sv.w) * share};

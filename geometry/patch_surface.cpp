@@ -231,7 +231,9 @@ void PatchSurface::join_patches(const SourceLocation& where, Warnings& warnings)
   vertex_count_ = vertices.size();
   if (inside_out > 0)
     warnings.push_back(
-        {where, "edges along which two patches run in the same direction: one of them is inside out", inside_out});
+        {where,
+         "edges along which two patches run in the same direction: one of them is inside out, or more than two meet",
+         inside_out});
 }
 
 void PatchSurface::find_creases() {

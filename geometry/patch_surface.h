@@ -34,8 +34,8 @@ struct PatchSurfaceOptions {
 class PatchSurface final : public ParametricSurface {
  public:
   /// Patches must be finite and weights positive, the curves of Coons patches meet in their corners: throws Error
-  /// (bad_input) that names the patch, counted from 1, at `where`. Warns of edges where both patches run in the same
-  /// direction, so that one of them is inside out.
+  /// (bad_input) that names the patch, counted from 1, at `where`. Warns of edges along which two patches run in the
+  /// same direction, so that one of them is inside out or a third one meets them.
   PatchSurface(std::vector<SurfacePatch> patches, const PatchSurfaceOptions& options, const SourceLocation& where,
                Warnings& warnings);
 

@@ -112,6 +112,28 @@ TEST(PatchSurface, CreasesWhereNormalsDiffer) {
   }
 }
 
+// Row 11 of the catalogue: patches that meet at a right angle, as a T-tail's do. One normal for both, here that of the
+// patch that comes first, is wrong by the whole angle on the other; each its own is right. (A mean would be wrong by 45
+// degrees on both.)
+TEST(PatchSurface, RightAnglesShareNoNormal) {
+  BezierPatch wall;
+  for (std::size_t j = 0; j < 4; ++j)
+    for (std::size_t i = 0; i < 4; ++i) wall.points[4 * j + i] = {0, double(j) / 3, double(i) / 3};
+  for (const double crease_angle : {180.0, kPatchCreaseAngle}) {
+    PatchSurfaceOptions options;
+    options.crease_angle = crease_angle;
+    const TriangleMesh mesh = tessellate_uniformly(surface_of({square(-1, 0), wall}, options), 4);
+    double worst = 0;
+    for (std::size_t i = 0; i < mesh.corners.size(); ++i) {
+      const std::uint32_t normal = mesh.normal_corners.empty() ? mesh.corners[i] : mesh.normal_corners[i];
+      const Vec3d truth = mesh.triangle_faces[i / 3] == 0 ? Vec3d(0, 0, 1) : Vec3d(-1, 0, 0);
+      worst = std::max(worst, degrees_between(Vec3d(mesh.normals[normal]), truth));
+    }
+    std::printf("row 11, crease angle %g: normals off by up to %g degrees\n", crease_angle, worst);
+    EXPECT_NEAR(worst, crease_angle == 180 ? 90 : 0, 1e-5);
+  }
+}
+
 TEST(PatchSurface, WeightsMustAgreeInProportion) {
   std::vector<BezierPatch> patches{square(-1, 0), square(0, 0)};
   for (std::size_t j = 0; j < 4; ++j) patches[0].weights[4 * j + 3] = 2, patches[1].weights[4 * j] = 5;
@@ -152,6 +174,20 @@ TEST(PatchSurface, TheSphereIsClosedAndItsPolesAreVertices) {
       EXPECT_GT(at.du.cross(at.dv).dot(at.normal), 0) << "right-handed either way";
       EXPECT_EQ(at.texture, flip ? Vec2f(0.5f, 0.25f) : Vec2f(0.25f, 0.5f));
     }
+  }
+}
+
+// A tip halfway between two floats, so that the last bit of a sum in double shows.
+TEST(PatchSurface, ACollapsedSideIsOnePointToTheBit) {
+  std::mt19937 random(8);
+  BezierPatch patch = random_patch(random, true);
+  for (std::size_t i = 0; i < 4; ++i) patch.points[i] = {1 + 0x1p-24, 0.5 + 0x1p-25, -1 - 0x3p-24};
+  const PatchSurface surface = surface_of({patch});
+  ASSERT_TRUE(surface.sides(0)[0].collapsed);
+  const Vec3f corner = sample(surface, 0, {0, 0}).position;
+  for (int i = 0; i <= 100; ++i) {
+    const Vec3f point = sample(surface, 0, {i / 100.0, 0}).position;
+    EXPECT_EQ(std::memcmp(&point, &corner, sizeof corner), 0) << i;
   }
 }
 
