@@ -47,7 +47,9 @@ class SceneValueWriter {
     else if constexpr (std::same_as<T, FaceLists>)
       return member.sizes.empty();
     else if constexpr (std::same_as<T, std::vector<Vec3f>> || std::same_as<T, std::vector<Vec2f>> ||
-                       std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>>)
+                       std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>> ||
+                       std::same_as<T, std::vector<Crease>> || std::same_as<T, std::vector<SharpCorner>> ||
+                       std::same_as<T, std::vector<std::uint32_t>>)
       return member.empty();
     else if constexpr (std::same_as<T, Matrix44d>)
       return member == Matrix44d();

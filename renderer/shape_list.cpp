@@ -13,7 +13,9 @@
 #include <utility>
 
 #include "geometry/mesh_file.h"
+#include "geometry/subdivision_surface.h"
 #include "geometry/terrain.h"
+#include "geometry/tessellation.h"
 #include "geometry/tree.h"
 #include "geometry/triangulation.h"
 #include "geometry/vertex_normals.h"
@@ -184,12 +186,40 @@ class Assembler {
     }
     begin_phase("preparing " + shape.name);
     count_faces(*mesh, summary);
-    apply_normal_source(*mesh, kind, shape.where, warnings_);
     std::vector<std::optional<std::uint32_t>> group_materials;
     if (shape.material.empty()) group_materials = mesh_materials_.of_groups(*mesh, path.string());
     const std::vector<FaceGroup> groups = std::move(mesh->groups);
-    add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
+    if (kind.subdivision) {
+      add_subdivided(*mesh, kind, shape, id, summary);
+    } else {
+      if (mesh->subdivision)
+        warnings_.push_back(
+            {shape.where,
+             "subdivision tags not used, the polygons themselves are drawn; the shape's key subdivision "
+             "(\"subdivision\": {}) makes a smooth surface of them"});
+      apply_normal_source(*mesh, kind, shape.where, warnings_);
+      add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
+    }
     tag_materials(groups, group_materials, assembly.meshes.back(), summary);
+  }
+
+  void add_subdivided(const PolygonMesh& mesh, const MeshShape& kind, const ShapeDescription& shape, ShapeId id,
+                      ShapeSummary& summary) {
+    const SubdivisionRules rules = joined(mesh.subdivision.value_or(SubdivisionRules{}), *kind.subdivision);
+    add_surface(*make_subdivision_surface(mesh, rules, shape.where, warnings_), shape, id, summary);
+    TriangleMesh& triangles = assembly.meshes.back().mesh;
+    if (kind.normals == NormalSource::flat) triangles.normals = {}, triangles.normal_corners = {};
+  }
+
+  /// What every curved shape becomes; `surface` lies in the shape's space.
+  void add_surface(const ParametricSurface& surface, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    // As fine as half a million triangles allow, within a factor of two.
+    constexpr std::size_t kTriangles = 500'000;
+    constexpr int kLeastRate = 4, kMostRate = 32;
+    int rate = kLeastRate;
+    while (rate < kMostRate && 2 * surface.face_count() * static_cast<std::size_t>(4 * rate * rate) <= kTriangles)
+      rate *= 2;
+    add_mesh(tessellate_uniformly(surface, rate), shape, id, summary);
   }
 
   /// Gives each triangle the material of its face's group.
