@@ -50,7 +50,7 @@ class SceneValueWriter {
                        std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>> ||
                        std::same_as<T, std::vector<Crease>> || std::same_as<T, std::vector<SharpCorner>> ||
                        std::same_as<T, std::vector<std::uint32_t>>)
-      return member.empty();
+      return member.empty() && !field.required;
     else if constexpr (std::same_as<T, Matrix44d>)
       return member == Matrix44d();
     else if constexpr (requires { member.has_value(); })
