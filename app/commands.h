@@ -11,5 +11,6 @@ int scenes_command(const Words& words);
 int schema_command(const Words& words);
 int ocio_command(const Words& words);
 int bench_command(const Words& words);
+int convert_command(const Words& words);
 
 }  // namespace raytree::app

@@ -268,7 +268,7 @@ class SubdivisionSurface final : public ParametricSurface {
 };
 
 /// Refuses faces for which OpenSubdiv 3.5's Bfr reads creases that it never wrote, and crashes: with a corner that two
-/// faces alone share whole around (interior, valence 2) and a semi-sharp crease at some corner.
+/// faces alone share whole around (interior, valence 2) and a crease at some corner.
 void refuse_creased_folds(const osd::Far::TopologyLevel& level, const SourceLocation& where) {
   const auto is_fold = [&](int vertex) {
     return level.GetVertexFaces(vertex).size() == 2 && !level.IsVertexBoundary(vertex) &&
@@ -276,7 +276,8 @@ void refuse_creased_folds(const osd::Far::TopologyLevel& level, const SourceLoca
   };
   const auto is_creased = [&](int vertex) {
     for (const int edge : level.GetVertexEdges(vertex))
-      if (level.IsEdgeSemiSharp(edge)) return true;
+      if (level.GetEdgeSharpness(edge) > 0 && !level.IsEdgeBoundary(edge) && !level.IsEdgeNonManifold(edge))
+        return true;
     return false;
   };
   for (int vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
@@ -287,7 +288,7 @@ void refuse_creased_folds(const osd::Far::TopologyLevel& level, const SourceLoca
           throw Error(ErrorKind::bad_input, where,
                       "subdivision cage: face " + std::to_string(face) + " (counted from 0) has vertex " +
                           std::to_string(vertex) +
-                          ", which two faces alone share whole around, and a semi-sharp crease at vertex " +
+                          ", which two faces alone share whole around, and a crease at vertex " +
                           std::to_string(corner) + ": OpenSubdiv has no limit surface there");
   }
 }

@@ -224,6 +224,9 @@ struct MeshShape {
   std::string file;  ///< .obj or .ply, relative to the scene file; empty: `mesh` is already there
   NormalSource normals = NormalSource::file;
   double crease_angle = 40;  ///< degrees; faces that meet at a larger angle share no normal
+  /// Makes a subdivision cage of the mesh: its limit surface is what is seen. These rules join those of the file's tags
+  /// and are the stronger ones.
+  std::optional<SubdivisionRules> subdivision;
   /// The loaded mesh (also for polygons given in the scene file). Consumed by prepare().
   std::shared_ptr<PolygonMesh> mesh;
 };

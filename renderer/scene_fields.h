@@ -124,6 +124,45 @@ struct EnumTable<DegenerateNormal> {
        {E::none, "none", "nothing: the mean normal of the patch"}}};
 };
 template <>
+struct EnumTable<SubdivisionScheme> {
+  using E = SubdivisionScheme;
+  static constexpr std::array<EnumEntry<E>, 3> entries{
+      {{E::catmark, "catmark", "Catmull-Clark, for faces of any size"},
+       {E::loop, "loop", "Loop, for triangles alone"},
+       {E::bilinear, "bilinear", "the faces themselves, quads bilinear"}}};
+};
+template <>
+struct EnumTable<BoundaryRule> {
+  using E = BoundaryRule;
+  static constexpr std::array<EnumEntry<E>, 3> entries{
+      {{E::none, "none", "faces at the boundary have no surface"},
+       {E::edge_only, "edge_only", "the surface reaches the boundary and rounds its corners"},
+       {E::edge_and_corner, "edge_and_corner", "and corners that one face alone has stay where they are"}}};
+};
+template <>
+struct EnumTable<FaceVaryingRule> {
+  using E = FaceVaryingRule;
+  static constexpr std::array<EnumEntry<E>, 6> entries{
+      {{E::none, "none", "nowhere"},
+       {E::corners_only, "corners_only", "at corners of islands"},
+       {E::corners_plus1, "corners_plus1", "and where three or more islands meet"},
+       {E::corners_plus2, "corners_plus2", "and at darts"},
+       {E::boundaries, "boundaries", "along outlines of islands"},
+       {E::all, "all", "everywhere: bilinear"}}};
+};
+template <>
+struct EnumTable<CreaseMethod> {
+  using E = CreaseMethod;
+  static constexpr std::array<EnumEntry<E>, 2> entries{{{E::uniform, "uniform", "sharpness falls by one at each level"},
+                                                        {E::chaikin, "chaikin", "and is smoothed along the crease"}}};
+};
+template <>
+struct EnumTable<TriangleRule> {
+  using E = TriangleRule;
+  static constexpr std::array<EnumEntry<E>, 2> entries{
+      {{E::catmark, "catmark", "as any other face"}, {E::smooth, "smooth", "weights that leave fewer ripples"}}};
+};
+template <>
 struct EnumTable<TreeSpecies> {
   using E = TreeSpecies;
   static constexpr std::array<EnumEntry<E>, 2> entries{
@@ -662,6 +701,61 @@ void visit_fields(Visitor& visit, T& mesh) {
   visit(Field{.key = "groups", .text = "Runs of faces under a name, in order, that do not overlap"}, mesh.groups);
 }
 
+template <class Visitor, Is<Crease> T>
+void visit_fields(Visitor& visit, T& crease) {
+  visit(Field{.key = "vertices",
+              .text = "Chain of two or more indices into positions, zero-based; each two in a row are an edge",
+              .range = {0, 4294967295.0},
+              .required = true},
+        crease.vertices);
+  visit(Field{.key = "sharpness",
+              .text = "Levels of subdivision that it stays sharp for; from 10 on for ever",
+              .range = kNotNegative},
+        crease.sharpness);
+}
+
+template <class Visitor, Is<SharpCorner> T>
+void visit_fields(Visitor& visit, T& corner) {
+  visit(
+      Field{.key = "vertex", .text = "Index into positions, zero-based", .range = {0, 4294967295.0}, .required = true},
+      corner.vertex);
+  visit(Field{.key = "sharpness", .text = "As a crease's", .range = kNotNegative}, corner.sharpness);
+}
+
+template <class Visitor, Is<SubdivisionRules> T>
+void visit_fields(Visitor& visit, T& rules) {
+  visit(Field{.key = "scheme", .text = "Scheme", .absent = "the file's; else catmark"}, rules.scheme);
+  visit(Field{.key = "boundary",
+              .text = "What becomes of edges that one face alone has",
+              .absent = "the file's; else edge_only"},
+        rules.boundary);
+  visit(Field{.key = "face_varying",
+              .text = "Where texture coordinates are interpolated linearly",
+              .absent = "the file's; else boundaries"},
+        rules.face_varying);
+  visit(Field{.key = "crease_method",
+              .text = "How sharpness falls from level to level",
+              .absent = "the file's; else uniform"},
+        rules.crease_method);
+  visit(
+      Field{
+          .key = "triangles", .text = "How catmark treats triangles of the cage", .absent = "the file's; else catmark"},
+      rules.triangles);
+  visit(Field{.key = "crease_angle",
+              .text = "Edges whose faces meet at a larger angle become infinitely sharp",
+              .unit = "degrees",
+              .range = {0, 180},
+              .absent = "none do"},
+        rules.crease_angle);
+  visit(Field{.key = "creases", .text = "Sharp edges; the last one counts where an edge is named twice"},
+        rules.creases);
+  visit(Field{.key = "corners", .text = "Sharp vertices"}, rules.corners);
+  visit(Field{.key = "holes",
+              .text = "Faces, counted from 0, that have no surface but shape their neighbors",
+              .range = {0, 4294967295.0}},
+        rules.holes);
+}
+
 template <class Visitor, Is<MeshShape> T>
 void visit_fields(Visitor& visit, T& mesh) {
   visit(Field{.key = "file",
@@ -674,6 +768,10 @@ void visit_fields(Visitor& visit, T& mesh) {
               .unit = "degrees",
               .range = {0, 180}},
         mesh.crease_angle);
+  visit(Field{.key = "subdivision",
+              .text = "Makes the mesh the cage of a smooth surface; {} where the defaults and the file's tags will do",
+              .absent = "the polygons themselves are drawn"},
+        mesh.subdivision);
   visit.inlined(mesh);
 }
 
@@ -876,11 +974,12 @@ void visit_fields(Visitor& visit, T& scene) {
 
 /// A struct with a table.
 template <class T>
-concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, TessellationSettings> ||
-    Is<T, RenderSettings> || Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> ||
-    Is<T, StripesPattern> || Is<T, NoisePattern> || Is<T, BumpDescription> || Is<T, AngleWeight> ||
-    Is<T, HighlightDescription> || Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> ||
-    Is<T, GroupDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
+concept Table =
+    Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, TessellationSettings> || Is<T, RenderSettings> ||
+    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, StripesPattern> ||
+    Is<T, NoisePattern> || Is<T, BumpDescription> || Is<T, Crease> || Is<T, SharpCorner> || Is<T, SubdivisionRules> ||
+    Is<T, AngleWeight> || Is<T, HighlightDescription> || Is<T, MaterialDescription> || Is<T, FaceGroup> ||
+    Is<T, ShapeDescription> || Is<T, GroupDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.
 template <class T>

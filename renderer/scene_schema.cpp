@@ -370,6 +370,15 @@ class SchemaWriter {
   void schema(const Field&, const std::vector<AngleWeight>&) {
     list([&] { object(AngleWeight{}); });
   }
+  void schema(const Field&, const std::vector<Crease>&) {
+    list([&] { object(Crease{}); });
+  }
+  void schema(const Field&, const std::vector<SharpCorner>&) {
+    list([&] { object(SharpCorner{}); });
+  }
+  void schema(const Field& field, const std::vector<std::uint32_t>&) {
+    list([&] { schema(field, std::uint32_t{}); });
+  }
   template <Named T>
   void schema(const Field&, const std::vector<T>&) {
     type("object");
@@ -480,8 +489,10 @@ class ReferenceWriter {
     if constexpr (std::same_as<T, FaceLists>) return "list of `[i, j, k, ...]`";
     if constexpr (std::same_as<T, std::vector<double>>) return "list of numbers";
     if constexpr (is_index_lists<T>) return "lists of " + std::to_string(index_list_count<T>) + " whole numbers";
-    if constexpr (std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>>)
+    if constexpr (std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>> ||
+                  std::same_as<T, std::vector<Crease>> || std::same_as<T, std::vector<SharpCorner>>)
       return "list of objects";
+    if constexpr (std::same_as<T, std::vector<std::uint32_t>>) return "list of whole numbers";
     if constexpr (requires(const T& list) { noun_of<typename T::value_type>(); }) return "objects by name";
     if constexpr (Table<T> || std::same_as<T, Background>) return "object";
     return {};
@@ -599,6 +610,13 @@ std::string scene_reference() {
   out.table("groups.NAME", "One group of shapes, in a space of its own.", GroupDescription{});
   out.table("shapes.NAME", "One shape; these keys and those of its type.", ShapeDescription{});
   out.alternatives("shapes.NAME", ShapeKind{});
+  out.table("shapes.NAME.subdivision",
+            "What a mesh is as a cage. OpenSubdiv's tags in an OBJ (`t`) join these keys, which are the stronger ones; "
+            "without "
+            "this object the tags are not used.",
+            SubdivisionRules{});
+  out.table("shapes.NAME.subdivision.creases[]", "A chain of sharp edges.", Crease{});
+  out.table("shapes.NAME.subdivision.corners[]", "A sharp vertex.", SharpCorner{});
   out.table("shapes.NAME.groups[]", "A run of faces.", FaceGroup{});
   out.table("shapes.NAME.transform", "One step. Within a step: scale first, then rotate, then translate.",
             TransformStep{});

@@ -48,8 +48,10 @@ class SceneValueWriter {
       return member.sizes.empty();
     else if constexpr (std::same_as<T, std::vector<Vec3f>> || std::same_as<T, std::vector<Vec2f>> ||
                        std::same_as<T, std::vector<FaceGroup>> || std::same_as<T, std::vector<AngleWeight>> ||
-                       std::same_as<T, std::vector<Vec3d>> || std::same_as<T, std::vector<double>> || is_index_lists<T>)
-      return member.empty();
+                       std::same_as<T, std::vector<Vec3d>> || std::same_as<T, std::vector<double>> ||
+                       is_index_lists<T> || std::same_as<T, std::vector<Crease>> ||
+                       std::same_as<T, std::vector<SharpCorner>> || std::same_as<T, std::vector<std::uint32_t>>)
+      return member.empty() && !field.required;
     else if constexpr (std::same_as<T, Matrix44d>)
       return member == Matrix44d();
     else if constexpr (requires { member.has_value(); })

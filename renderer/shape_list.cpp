@@ -14,6 +14,7 @@
 
 #include "geometry/mesh_file.h"
 #include "geometry/patch_surface.h"
+#include "geometry/subdivision_surface.h"
 #include "geometry/terrain.h"
 #include "geometry/tessellation.h"
 #include "geometry/tree.h"
@@ -196,11 +197,20 @@ class Assembler {
     }
     begin_phase("preparing " + shape.name);
     count_faces(*mesh, summary);
-    apply_normal_source(*mesh, kind, shape.where, warnings_);
     std::vector<std::optional<std::uint32_t>> group_materials;
     if (shape.material.empty()) group_materials = mesh_materials_.of_groups(*mesh, path.string());
     const std::vector<FaceGroup> groups = std::move(mesh->groups);
-    add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
+    if (kind.subdivision) {
+      add_subdivided(*mesh, kind, shape, id, summary);
+    } else {
+      if (mesh->subdivision)
+        warnings_.push_back(
+            {shape.where,
+             "subdivision tags not used, the polygons themselves are drawn; the shape's key subdivision "
+             "(\"subdivision\": {}) makes a smooth surface of them"});
+      apply_normal_source(*mesh, kind, shape.where, warnings_);
+      add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
+    }
     tag_materials(groups, group_materials, assembly.meshes.back(), summary);
   }
 
@@ -211,6 +221,14 @@ class Assembler {
                                shape.where, warnings_);
     summary.faces_by_size[1] = static_cast<std::int64_t>(surface.face_count());
     add_surface(surface, shape, id, summary);
+  }
+
+  void add_subdivided(const PolygonMesh& mesh, const MeshShape& kind, const ShapeDescription& shape, ShapeId id,
+                      ShapeSummary& summary) {
+    const SubdivisionRules rules = joined(mesh.subdivision.value_or(SubdivisionRules{}), *kind.subdivision);
+    add_surface(*make_subdivision_surface(mesh, rules, shape.where, warnings_), shape, id, summary);
+    TriangleMesh& triangles = assembly.meshes.back().mesh;
+    if (kind.normals == NormalSource::flat) triangles.normals = {}, triangles.normal_corners = {};
   }
 
   /// Gives each triangle the material of its face's group.

@@ -321,6 +321,26 @@ TEST(SubdivisionSurface, HasTheSameBitsAtAnyNumberOfThreadsAndInAnyCompany) {
   }
 }
 
+TEST(SubdivisionSurface, CreasesBesideAVertexOfTwoFacesAreRefused) {
+  // OpenSubdiv 3.5 reads memory that it never wrote there, and crashes every now and then.
+  PolygonMesh fold;
+  fold.positions = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}};
+  test::add_face(fold, {0, 2, 1, 4});
+  test::add_face(fold, {0, 4, 1, 3});
+  EXPECT_NEAR(sample_at(*surface_of(fold), 0, 0.5f, 0.5f).normal.length(), 1, 1e-6);
+  for (const double sharpness : {2.0, 10.0}) {
+    SubdivisionRules rules;
+    rules.creases = {{{0, 4}, sharpness}};
+    try {
+      surface_of(fold, rules);
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("face 0 (counted from 0) has vertex 4"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST(SubdivisionSurface, OpenSubdivsShapesHaveASurfaceOrAReason) {
   std::size_t evaluated = 0, refused = 0;
   for (const auto& path : test::test_data_files("subdiv/osd_shapes")) {
@@ -347,6 +367,7 @@ TEST(SubdivisionSurface, OpenSubdivsShapesHaveASurfaceOrAReason) {
     }
   }
   std::printf("OpenSubdiv's shapes: %zu evaluated, %zu refused\n", evaluated, refused);
+  EXPECT_LE(refused, 1u);  // catmark_val2_interior
 }
 
 }  // namespace

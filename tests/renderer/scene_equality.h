@@ -94,16 +94,35 @@ inline bool equal(const FaceGroup& a, const FaceGroup& b) {
 inline bool equal(const std::vector<FaceGroup>& a, const std::vector<FaceGroup>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return equal(x, y); });
 }
+inline bool equal(const SubdivisionRules& a, const SubdivisionRules& b) {
+  const auto& [scheme, boundary, face_varying, method, triangles, angle, creases, corners, holes] = a;
+  return scheme == b.scheme && boundary == b.boundary && face_varying == b.face_varying && method == b.crease_method &&
+         triangles == b.triangles && angle == b.crease_angle && holes == b.holes &&
+         std::equal(creases.begin(), creases.end(), b.creases.begin(), b.creases.end(),
+                    [](const Crease& x, const Crease& y) {
+                      const auto& [vertices, sharpness] = x;
+                      return vertices == y.vertices && sharpness == y.sharpness;
+                    }) &&
+         std::equal(corners.begin(), corners.end(), b.corners.begin(), b.corners.end(),
+                    [](const SharpCorner& x, const SharpCorner& y) {
+                      const auto& [vertex, sharpness] = x;
+                      return vertex == y.vertex && sharpness == y.sharpness;
+                    });
+}
+inline bool equal(const std::optional<SubdivisionRules>& a, const std::optional<SubdivisionRules>& b) {
+  return a.has_value() == b.has_value() && (!a || equal(*a, *b));
+}
 inline bool equal(const PolygonMesh& a, const PolygonMesh& b) {
-  const auto& [origin, positions, sizes, corners, normals, normal_corners, uv, uv_corners, groups, libraries] = a;
+  const auto& [origin, positions, sizes, corners, normals, normal_corners, uv, uv_corners, groups, libraries, tags] = a;
   return origin == b.origin && positions == b.positions && sizes == b.face_sizes && corners == b.corners &&
          normals == b.normals && normal_corners == b.normal_corners && uv == b.texture_coordinates &&
-         uv_corners == b.texture_corners && equal(groups, b.groups) && libraries == b.material_libraries;
+         uv_corners == b.texture_corners && equal(groups, b.groups) && libraries == b.material_libraries &&
+         equal(tags, b.subdivision);
 }
 inline bool equal(const MeshShape& a, const MeshShape& b) {
-  const auto& [file, normals, angle, mesh] = a;
-  return file == b.file && normals == b.normals && angle == b.crease_angle && !mesh == !b.mesh &&
-         (!mesh || equal(*mesh, *b.mesh));
+  const auto& [file, normals, angle, subdivision, mesh] = a;
+  return file == b.file && normals == b.normals && angle == b.crease_angle && equal(subdivision, b.subdivision) &&
+         !mesh == !b.mesh && (!mesh || equal(*mesh, *b.mesh));
 }
 inline bool equal(const PatchesShape& a, const PatchesShape& b) {
   const auto& [file, positions, weights, bezier, coons, lathe, angle, flip, normals] = a;

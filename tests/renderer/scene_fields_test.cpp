@@ -46,7 +46,10 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(HighlightDescription{}), 3);
   EXPECT_EQ(count(MaterialDescription{}), 14 - 1 + 1) << "without name, with \"from\"";
   EXPECT_EQ(count(FaceGroup{}), 4);
-  EXPECT_EQ(count(MeshShape{}), 4);
+  EXPECT_EQ(count(MeshShape{}), 5);
+  EXPECT_EQ(count(SubdivisionRules{}), 9);
+  EXPECT_EQ(count(Crease{}), 2);
+  EXPECT_EQ(count(SharpCorner{}), 2);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";
   EXPECT_EQ(count(PatchesShape{}), 9);
   EXPECT_EQ(count(SphereShape{}), 2);

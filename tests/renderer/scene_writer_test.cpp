@@ -117,7 +117,8 @@ class Randomizer {
     x.reset();
     if (whole(0, 1) == 0) fill(field, x.emplace());
   }
-  void fill(const Field& field, std::optional<BumpDescription>& x) {
+  template <class T>
+  void fill(const Field& field, std::optional<T>& x) {
     x.reset();
     if (whole(0, 1) == 0) fill(field, x.emplace());
   }
@@ -135,6 +136,12 @@ class Randomizer {
     lists.resize(static_cast<std::size_t>(whole(1, 3)));
     for (auto& list : lists)
       for (std::uint32_t& index : list) index = static_cast<std::uint32_t>(whole(0, 3));
+  }
+  template <class T>
+  requires std::same_as<T, Crease> || std::same_as<T, SharpCorner> || std::same_as<T, std::uint32_t>
+  void fill(const Field& field, std::vector<T>& list) {
+    list.clear();
+    for (int i = whole(0, 3); i > 0; --i) fill(field, list.emplace_back());
   }
   void fill(const Field&, Background& x) { tagged({}, x); }
   void fill(const Field&, MaterialBase&) {}
