@@ -30,8 +30,8 @@ struct MeshLocator {
 /// - faces with fewer than three corners left, and quads that use a vertex twice, are dropped;
 ///   larger faces may visit a vertex twice (that is how files write holes);
 /// - faces with a position that is not finite are dropped, and such positions become the first finite one.
-/// Group runs and holes follow; face_sizes is emptied when only triangles are left. Each kind adds one counted warning. Throws
-/// Error (bad_input) at the file when no face is left.
+/// Group runs and holes follow; face_sizes is emptied when only triangles are left. Each kind adds one counted warning.
+/// Throws Error (bad_input) at the file when no face is left.
 void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& locate, Warnings& warnings);
 
 /// Gives corners whose normal or texture corner is kNoIndex one: their face's unit normal (Newell) and the texture

@@ -3,6 +3,7 @@
 #include "geometry/subdivision_surface.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <cstdio>
@@ -308,6 +309,7 @@ TEST(SubdivisionSurface, HasTheSameBitsAtAnyNumberOfThreadsAndInAnyCompany) {
   for (const PolygonMesh& cage : cages) {
     std::vector<SurfaceSample> first;
     for (const int threads : {1, 2, 3, 7}) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
       tbb::task_arena arena(threads);
       std::vector<SurfaceSample> samples;
       arena.execute([&] { samples = dense_samples(*surface_of(cage)); });
