@@ -95,10 +95,11 @@ inline bool equal(const std::vector<FaceGroup>& a, const std::vector<FaceGroup>&
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return equal(x, y); });
 }
 inline bool equal(const PolygonMesh& a, const PolygonMesh& b) {
-  const auto& [origin, positions, sizes, corners, normals, normal_corners, uv, uv_corners, groups, libraries] = a;
+  const auto& [origin, positions, sizes, corners, normals, normal_corners, uv, uv_corners, groups, libraries, tags] = a;
   return origin == b.origin && positions == b.positions && sizes == b.face_sizes && corners == b.corners &&
          normals == b.normals && normal_corners == b.normal_corners && uv == b.texture_coordinates &&
-         uv_corners == b.texture_corners && equal(groups, b.groups) && libraries == b.material_libraries;
+         uv_corners == b.texture_corners && equal(groups, b.groups) && libraries == b.material_libraries &&
+         tags.has_value() == b.subdivision.has_value();
 }
 inline bool equal(const MeshShape& a, const MeshShape& b) {
   const auto& [file, normals, angle, mesh] = a;
