@@ -33,7 +33,7 @@ constexpr int kLargestGrid = 16;     ///< of faces that turn out to need many se
 constexpr int kSegmentsPerCell = 4;  ///< of those: one cell for so many
 constexpr double kLargestRise = 2;   ///< of a rate in one round
 /// Facets of one face that are measured in one round: so many, and one in so many of the rest.
-constexpr std::size_t kMeasuredFacets = 16, kMeasuredShare = 16;
+constexpr std::size_t kMeasuredFacets = 1024, kMeasuredShare = 4;
 constexpr double kTurnsMuch = 0.5;  ///< cosine of 60 degrees
 constexpr std::size_t kFacesAtOnce = 16;
 

@@ -13,7 +13,7 @@
 
 namespace raytree {
 
-/// What was measured of one kind of hierarchy over triangles; docs/benchmarks.md says how.
+/// What was measured of one kind of hierarchy over a million triangles and more, on two Zen 3 cores with Embree 3.13.5.
 struct HierarchyCost {
   const char* name;
   EmbreeOptions::Quality quality;

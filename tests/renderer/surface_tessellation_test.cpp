@@ -31,6 +31,7 @@ TEST(SurfaceTessellation, TheViewIsTheCameras) {
        {CameraDescription::Projection::perspective, CameraDescription::Projection::orthographic}) {
     CameraDescription description = camera_at({2, 3, 8});
     description.projection = projection;
+    description.height = 12;
     const Camera camera(description, 640, 360, {0, 0, 0}, {});
     const TessellationView view = world_view(description, {640, 360}, {});
     for (const Vec3d& p : {Vec3d(0, 0, 0), Vec3d(1, -0.5, 2), Vec3d(-1, 1, -3)})
