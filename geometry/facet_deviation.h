@@ -103,7 +103,8 @@ class SampledFacet {
       const double tangent = across / along;
       // atan x = x - x^3 / 3 + O(x^5): to 2e-7 of itself below this.
       constexpr double kSmall = 0.03;
-      deviation.angle = along > 0 && tangent < kSmall ? tangent * (1 - tangent * tangent / 3) : std::atan2(across, along);
+      deviation.angle =
+          along > 0 && tangent < kSmall ? tangent * (1 - tangent * tangent / 3) : std::atan2(across, along);
       deviation.shading = deviation.angle / std::max(kTurnPerPixel, turn_);
     }
     return deviation;

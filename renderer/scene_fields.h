@@ -355,8 +355,8 @@ void visit_fields(Visitor& visit, T& tessellation) {
   visit(
       Field{.key = "tolerance",
             .text = "How far facets may lie off the limit surface as the camera sees it, in the picture; four times as "
-                    "far along the line of sight and where the frame does not reach. Normals may be off by what a "
-                    "shift of as many pixels turns them, or a pixel by 4/255",
+                    "far along the line of sight and where the frame does not reach. Normals are not bounded: facets "
+                    "of 6 pixels and more are cut until they are off by what a shift of as many pixels turns them",
             .unit = "pixels",
             .range = kPositive},
       tessellation.tolerance);

@@ -27,9 +27,9 @@ double total_seconds(const HierarchyCost& cost, const HierarchyDemand& demand) {
 const std::vector<HierarchyCost>& hierarchy_costs() {
   using Quality = EmbreeOptions::Quality;
   static const std::vector<HierarchyCost> costs = {
-      {"balanced", Quality::medium, false, 62, 0.45, 1.0},
-      {"quick", Quality::low, false, 95, 0.12, 0.75},
-      {"compact", Quality::medium, true, 34, 0.45, 0.6},
+      {"balanced", Quality::medium, false, 62, 0.45, 1.0, true},
+      {"quick", Quality::low, false, 95, 0.12, 0.75, false},
+      {"compact", Quality::medium, true, 34, 0.45, 0.6, true},
   };
   return costs;
 }
@@ -39,6 +39,7 @@ HierarchyChoice choose_hierarchy(const HierarchyDemand& demand) {
   const auto bytes = [&](const HierarchyCost& cost) { return cost.bytes * static_cast<double>(demand.primitives); };
   const HierarchyCost* best = nullptr;
   for (const HierarchyCost& cost : costs) {
+    if (!cost.repeatable) continue;
     if (demand.memory_allowed > 0 && bytes(cost) > static_cast<double>(demand.memory_allowed)) continue;
     if (best == nullptr || total_seconds(cost, demand) < total_seconds(*best, demand) * (1 - kLeastSaving))
       best = &cost;

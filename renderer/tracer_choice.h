@@ -21,6 +21,9 @@ struct HierarchyCost {
   double bytes;          ///< a triangle
   double build_seconds;  ///< a million triangles, one core
   double speed;          ///< of tracing, the balanced one's is 1
+  /// Whether it is the same for any number of threads that build it. Embree's quick one is not where surfaces coincide:
+  /// which of them a ray meets may differ. Such a kind is taken only where it is asked for by name.
+  bool repeatable;
 };
 
 /// In the order of preference where times are alike.
@@ -37,8 +40,8 @@ struct HierarchyChoice {
   std::string reason;  ///< one line for --verbose
 };
 
-/// The kind for which building and tracing together take least time, among those that fit in the memory allowed; the
-/// balanced one unless another saves kLeastSaving of the time. When none fits, the smallest.
+/// The kind for which building and tracing together take least time, among the repeatable ones that fit in the memory
+/// allowed; the balanced one unless another saves kLeastSaving of the time. When none fits, the smallest.
 HierarchyChoice choose_hierarchy(const HierarchyDemand& demand);
 
 /// That of the name, e.g. "compact". Throws Error (bad_input) with the names there are.
