@@ -59,8 +59,10 @@ void expect_consistent(const PatchSurface& surface) {
     EXPECT_LT(edge, surface.edge_count());
     EXPECT_LE(uses.size(), 2u);
     if (uses.size() < 2) continue;
-    const auto at = [&](std::size_t k) { return surface.sides(uses[k].first)[uses[k].second]; };
-    const auto end = [&](std::size_t k) { return surface.sides(uses[k].first)[(uses[k].second + 1) % 4].vertex; };
+    const auto at = [&, &uses = uses](std::size_t k) { return surface.sides(uses[k].first)[uses[k].second]; };
+    const auto end = [&, &uses = uses](std::size_t k) {
+      return surface.sides(uses[k].first)[(uses[k].second + 1) % 4].vertex;
+    };
     EXPECT_NE(at(0).reversed, at(1).reversed);
     EXPECT_EQ(at(0).vertex, end(1));
     EXPECT_EQ(at(1).vertex, end(0));

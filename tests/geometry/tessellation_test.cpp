@@ -209,10 +209,12 @@ TEST(Tessellation, ResultDoesNotDependOnThreads) {
   const std::pair<const test::AnalyticSurface*, TessellationRates> cases[] = {
       {&few, uniform_rates(few, 200)}, {&many, random_rates(many, 1, 4)}, {&rims, random_rates(rims, 2, 20)}};
   for (const auto& [surface, rates] : cases) {
-    const TriangleMesh expected = tbb::task_arena(1).execute([&] { return tessellate(*surface, rates); });
+    const TriangleMesh expected =
+        tbb::task_arena(1).execute([&surface = surface, &rates = rates] { return tessellate(*surface, rates); });
     for (const int threads : {2, 3, 7}) {
       const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 7);
-      const TriangleMesh mesh = tbb::task_arena(threads).execute([&] { return tessellate(*surface, rates); });
+      const TriangleMesh mesh = tbb::task_arena(threads).execute(
+          [&surface = surface, &rates = rates] { return tessellate(*surface, rates); });
       EXPECT_TRUE(test::same_bits(mesh.positions, expected.positions));
       EXPECT_TRUE(test::same_bits(mesh.corners, expected.corners));
       EXPECT_TRUE(test::same_bits(mesh.normals, expected.normals));

@@ -16,7 +16,10 @@ const std::string kCube =
        "faces": [[0,4,6,2],[1,3,7,5],[0,1,5,4],[2,6,7,3],[0,2,3,1],[4,5,7,6]])";
 
 std::string cube_scene(const std::string& members) {
-  return "{\"raytree\": 1, \"shapes\": {\"cube\": {\"type\": \"mesh\", " + kCube + ",\n" + members + "}}}";
+  // A rate of its own, so that centers of faces are points and halves of the cube have as many triangles.
+  return "{\"raytree\": 1, \"render\": {\"tessellation\": {\"rate\": 8}}, \"shapes\": {\"cube\": {\"type\": "
+         "\"mesh\", " +
+         kCube + ",\n" + members + "}}}";
 }
 
 Scene prepared(const std::string& text, Warnings& warnings) {
