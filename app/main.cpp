@@ -12,6 +12,7 @@
 #include "app/exit_status.h"
 #include "app/messages.h"
 #include "app/process.h"
+#include "app/sanitized.h"
 #include "app/suggestion.h"
 
 namespace raytree::app {
@@ -106,9 +107,8 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   raytree::app::occupy_standard_streams();
   const int status = raytree::app::guarded_run(raytree::app::Words(argv + (argc > 0 ? 1 : 0), argv + argc));
-#if defined(__SANITIZE_ADDRESS__)
-  if (status == raytree::app::kSuccess) return status;  // LeakSanitizer reports at an ordinary exit
-#endif
+  // LeakSanitizer reports at an ordinary exit.
+  if (raytree::kAddressSanitized && status == raytree::app::kSuccess) return status;
   // All files are in their places: what is left would be waiting for the image library, which may still load in the
   // background, and the destructors of hundreds of libraries.
   std::fflush(nullptr);

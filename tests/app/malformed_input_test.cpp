@@ -6,21 +6,16 @@
 #include <fstream>
 #include <map>
 
+#include "app/sanitized.h"
 #include "tests/app/program.h"
 #include "tests/test_data.h"
 
 namespace raytree::test {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool kSanitized = true;  // shadow memory and quarantine are no memory of the program
-#else
-constexpr bool kSanitized = false;
-#endif
+constexpr bool kSanitized = kAddressSanitized;  // shadow memory and quarantine are no memory of the program
 
 constexpr double kLongest = 10;  // seconds for a small file, on a machine busy with other tests
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::uint64_t memory_limit(std::uint64_t file_bytes) { return 4 * file_bytes + (std::uint64_t(256) << 20); }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/temporary_folder.h"
+
 namespace raytree::test {
 
 struct ProgramResult {
@@ -29,22 +31,12 @@ struct ProgramOptions {
 /// Runs `raytree` with these arguments to its end.
 ProgramResult run_program(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
 
-/// A folder of its own, removed with all that is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  /// Names of the files in it, sorted.
-  std::vector<std::string> names() const;
+/// `words` and then `more`.
+std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more);
 
- private:
-  std::filesystem::path folder_;
-};
+/// Expects bad input: status 2, nothing on standard output, one error line that holds every part.
+void expect_bad_input(const std::vector<std::string>& arguments, const std::vector<std::string>& parts);
 
-std::string file_text(const std::string& path);
 void write_text(const std::string& path, const std::string& text);
 
 }  // namespace raytree::test

@@ -1,12 +1,8 @@
-// Image files: every format comes back as it went in, bit for bit where the format can; files appear whole or not at
-// all, whatever the disk does; damaged files are errors.
+// Image files: every format comes back as it went in, bit for bit where the format can; damaged files are errors;
+// modules that are missing or still loading do no harm.
 #include "renderer/image_file.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -24,65 +20,26 @@
 
 #include "geometry/error.h"
 #include "renderer/film_image.h"
+#include "tests/temporary_folder.h"
 #include "tests/test_data.h"
 
-#ifdef __SANITIZE_ADDRESS__
-// On a truncated PNG, OpenImageIO's reader leaves by libpng's longjmp past a string that it holds.
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:ImageInput::geterror\n"; }
-#endif
-
 // OpenImageIO's PNG reader jumps, as libpng has it, past a string of its own where a file ends early.
+extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:ImageInput::geterror\n"; }
 
 namespace raytree {
 namespace {
 
+using namespace test;
 namespace fs = std::filesystem;
 
-// A folder of its own for each test, gone afterwards.
+/// A folder of its own for each test.
 class ImageFileTest : public ::testing::Test {
  protected:
-  ImageFileTest() {
-    std::string pattern = (fs::temp_directory_path() / "raytree-test-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~ImageFileTest() override {
-    std::error_code ignored;
-    fs::permissions(folder_, fs::perms::owner_all, ignored);
-    fs::remove_all(folder_, ignored);
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::vector<std::string> listing() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-  fs::path folder_;
+  std::string path(const std::string& name) const { return folder_.path(name); }
+
+  TemporaryFolder folder_;
 };
-
-std::string content(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  write_file_atomically(path, text.data(), text.size());
-}
-
-// The message of the failure that writing meets, or "" when it succeeds.
-std::string write_error(const std::string& path, const std::string& text) {
-  try {
-    write_text(path, text);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::failure);
-    return error.what();
-  }
-  return "";
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::uint32_t hashed(std::uint32_t x) {
   x ^= x >> 16;
@@ -354,11 +311,11 @@ TEST_F(ImageFileTest, DamagedFilesAreErrors) {
       }
     }
   std::fprintf(stderr, "%d of the damaged files hold a picture all the same\n", pictures);
-  write_text(path("empty.exr"), "");
-  write_text(path("text.png"), "not a picture");
+  folder_.write("empty.exr", "");
+  folder_.write("text.png", "not a picture");
   const Film film = full_film(40, 40, {0, 0, 40, 40});
   write_image(path("whole.exr"), scene_linear_image(film, false, {}));
-  write_text(path("half.exr"), content(path("whole.exr")).substr(0, 8000));
+  folder_.write("half.exr", file_text(path("whole.exr")).substr(0, 8000));
   for (const char* name : {"empty.exr", "text.png", "half.exr", "absent.exr", ""})
     EXPECT_THROW(read_image_file(path(name)), Error) << name;
 }
@@ -366,216 +323,14 @@ TEST_F(ImageFileTest, DamagedFilesAreErrors) {
 TEST_F(ImageFileTest, HeaderThatPromisesTooMuchIsRefused) {
   const Film film(4, 4, {0, 0, 4, 4}, {ChannelGroup::color});
   write_image(path("a.exr"), scene_linear_image(film, false, {}));
-  std::string bytes = content(path("a.exr"));
+  std::string bytes = file_text(path("a.exr"));
   const std::string name("dataWindow\0box2i\0", 17);
   const std::size_t at = bytes.find(name);
   ASSERT_NE(at, std::string::npos);
   const std::int32_t box[4] = {0, 0, 99999, 9999};
   std::memcpy(&bytes[at + name.size() + 4], box, sizeof box);
-  write_text(path("bomb.exr"), bytes);
+  folder_.write("bomb.exr", bytes);
   EXPECT_THROW(read_image_file(path("bomb.exr")), Error);
-}
-
-TEST_F(ImageFileTest, WritesAndReplaces) {
-  write_text(path("a"), "first");
-  EXPECT_EQ(content(path("a")), "first");
-  fs::permissions(path("a"), fs::perms(0640));
-  write_text(path("a"), "second");
-  EXPECT_EQ(content(path("a")), "second");
-  EXPECT_EQ(fs::status(path("a")).permissions(), fs::perms(0640));
-  const mode_t mask = umask(027);
-  write_text(path("b"), "");
-  umask(mask);
-  EXPECT_EQ(fs::file_size(path("b")), 0u);
-  EXPECT_EQ(fs::status(path("b")).permissions(), fs::perms(0640));
-  const std::string longest(255, 'x');  // a name that leaves no room for a suffix
-  write_text(path(longest), "long");
-  EXPECT_EQ(content(path(longest)), "long");
-  EXPECT_EQ(listing(), (std::vector<std::string>{"a", "b", longest}));
-}
-
-TEST_F(ImageFileTest, LinksAreFollowed) {
-  fs::create_directory(folder_ / "deep");
-  write_text(path("deep/target"), "old");
-  fs::create_symlink("deep/target", folder_ / "link");
-  fs::create_symlink("link", folder_ / "link2");
-  write_text(path("link2"), "new");
-  EXPECT_TRUE(fs::is_symlink(folder_ / "link") && fs::is_symlink(folder_ / "link2"));
-  EXPECT_EQ(content(path("deep/target")), "new");
-  fs::create_symlink("deep/later", folder_ / "dangling");
-  write_text(path("dangling"), "made");
-  EXPECT_EQ(content(path("deep/later")), "made");
-  fs::create_symlink("loop", folder_ / "loop");
-  EXPECT_TRUE(contains(write_error(path("loop"), "x"), path("loop")));
-}
-
-TEST_F(ImageFileTest, BadTargetsAreErrorsThatSayWhy) {
-  fs::create_directory(folder_ / "folder");
-  write_text(path("file"), "kept");
-  const std::string inside = write_error(path("file/inside"), "x");
-  EXPECT_TRUE(contains(inside, "Not a directory") && contains(inside, path("file/inside"))) << inside;
-  const std::string missing = write_error(path("absent/a.png"), "x");
-  EXPECT_TRUE(contains(missing, "No such file or directory") && contains(missing, path("absent/a.png"))) << missing;
-  const std::string directory = write_error(path("folder"), "x");
-  EXPECT_TRUE(contains(directory, "Is a directory")) << directory;
-  EXPECT_TRUE(contains(write_error("", "x"), "No such file"));
-  EXPECT_EQ(listing(), (std::vector<std::string>{"file", "folder"}));
-  EXPECT_EQ(content(path("file")), "kept");
-}
-
-TEST_F(ImageFileTest, ProtectedPlacesAreErrors) {
-  // The superuser may write anywhere, so a child without that right does it.
-  write_text(path("file"), "kept");
-  fs::create_directory(folder_ / "locked");
-  write_text(path("locked/old"), "kept");
-  fs::permissions(folder_, fs::perms(0755));
-  fs::permissions(folder_ / "file", fs::perms(0444));
-  fs::permissions(folder_ / "locked", fs::perms(0555));
-  const pid_t child = fork();
-  if (child == 0) {
-    if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(3);
-    const bool denied = contains(write_error(path("file"), "x"), "Permission denied") &&
-                        contains(write_error(path("locked/old"), "x"), "Permission denied") &&
-                        contains(write_error(path("locked/new"), "x"), "Permission denied");
-    _exit(denied ? 0 : 1);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  EXPECT_EQ(content(path("file")), "kept");
-  EXPECT_EQ(content(path("locked/old")), "kept");
-  EXPECT_EQ(listing(), (std::vector<std::string>{"file", "locked"}));
-  fs::permissions(folder_ / "locked", fs::perms(0755));
-}
-
-TEST_F(ImageFileTest, FullDevicesAndFileLimitsAreErrors) {
-  const std::string full = write_error("/dev/full", "x");
-  EXPECT_TRUE(contains(full, "No space left") && contains(full, "/dev/full")) << full;
-  EXPECT_TRUE(fs::is_character_file("/dev/full"));
-  write_text("/dev/null", "x");
-  EXPECT_TRUE(fs::is_character_file("/dev/null"));
-
-  // A limit on file size raises SIGXFSZ, which kills unless it is held back.
-  write_text(path("a"), "kept");
-  const std::string large(100000, 'x');
-  const pid_t child = fork();
-  if (child == 0) {
-    signal(SIGXFSZ, SIG_DFL);
-    const rlimit limit{4096, 4096};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    _exit(contains(write_error(path("a"), large), "File too large") ? 0 : 1);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  EXPECT_EQ(content(path("a")), "kept");
-  EXPECT_EQ(listing(), std::vector<std::string>{"a"});
-}
-
-TEST_F(ImageFileTest, PipesAndDescriptorsAreWrittenInPlace) {
-  const std::string text(200000, 'p');  // more than a pipe holds
-  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-  std::string received;
-  std::thread reader([&] { received = content(path("pipe")); });
-  write_text(path("pipe"), text);
-  reader.join();
-  EXPECT_TRUE(received == text);
-  EXPECT_TRUE(fs::is_fifo(path("pipe")));
-
-  // A redirected output: /dev/fd/N leads to a regular file, which must be written through the descriptor.
-  const int file = open(path("out").c_str(), O_RDWR | O_CREAT, 0600);
-  ASSERT_EQ(write(file, "head ", 5), 5);
-  struct stat before {
-  }, after{};
-  fstat(file, &before);
-  write_text("/dev/fd/" + std::to_string(file), "one ");
-  write_text("/proc/self/fd/" + std::to_string(file), "two");
-  close(file);
-  EXPECT_EQ(content(path("out")), "head one two");
-  stat(path("out").c_str(), &after);
-  EXPECT_EQ(before.st_ino, after.st_ino);
-
-  // A reader that is gone: an error, not SIGPIPE.
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
-  close(ends[0]);
-  EXPECT_TRUE(contains(write_error("/dev/fd/" + std::to_string(ends[1]), text), "Broken pipe"));
-  close(ends[1]);
-}
-
-TEST_F(ImageFileTest, StandardOutputIsADash) {
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    dup2(ends[1], STDOUT_FILENO);
-    close(ends[0]);
-    close(ends[1]);
-    write_text("-", "by dash ");
-    write_text("/dev/stdout", "by name");
-    _exit(0);
-  }
-  close(ends[1]);
-  std::string text;
-  char buffer[64];
-  for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<std::size_t>(n));
-  close(ends[0]);
-  waitpid(child, nullptr, 0);
-  EXPECT_EQ(text, "by dash by name");
-}
-
-TEST_F(ImageFileTest, InterruptedAndKilledWritesLeaveWholeFiles) {
-  // SIGTERM's handler removes the temporary file; SIGKILL cannot, but the target is old or new, never a part.
-  const std::string old_text(1000, 'o'), new_text(1 << 20, 'n');
-  for (int i = 0; i < 18; ++i) {
-    write_text(path("a"), old_text);
-    const int signal_number = i % 3 == 0 ? SIGKILL : SIGTERM;
-    const pid_t child = fork();
-    if (child == 0) {
-      signal(SIGTERM, [](int) {
-        remove_unfinished_file();
-        _exit(143);
-      });
-      for (;;) write_text(path("a"), new_text);
-    }
-    std::this_thread::sleep_for(std::chrono::microseconds(200 + 777 * i));
-    kill(child, signal_number);
-    waitpid(child, nullptr, 0);
-    const std::string now = content(path("a"));
-    EXPECT_TRUE(now == old_text || now == new_text) << now.size();
-    if (signal_number == SIGTERM) {
-      EXPECT_EQ(listing(), std::vector<std::string>{"a"});
-    } else {
-      for (const std::string& name : listing())
-        if (name != "a") fs::remove(folder_ / name);
-    }
-  }
-}
-
-TEST_F(ImageFileTest, KilledWritesOfANewFileLeaveNothingBehind) {
-  const int probe = open(folder_.c_str(), O_TMPFILE | O_WRONLY, 0600);
-  if (probe < 0) GTEST_SKIP() << "no nameless files in " << folder_ << ": a killed write leaves its temporary file";
-  close(probe);
-  const std::string text(std::size_t(8) << 20, 'n');
-  int unfinished = 0;
-  for (int i = 0; i < 20; ++i) {
-    const pid_t child = fork();
-    if (child == 0) {
-      write_text(path("b"), text);
-      for (;;) pause();
-    }
-    std::this_thread::sleep_for(std::chrono::microseconds(300 + 700 * i));
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-    if (fs::exists(path("b"))) {
-      EXPECT_EQ(fs::file_size(path("b")), text.size());
-      fs::remove(path("b"));
-    } else {
-      ++unfinished;
-    }
-    EXPECT_TRUE(listing().empty()) << listing().front();
-  }
-  EXPECT_GT(unfinished, 0) << "every write was finished before it was killed: nothing was tested";
 }
 
 // A program that exits while the module is still loading, or never finds it, must do so quietly.

@@ -9,6 +9,7 @@
 #include "renderer/mesh_scene.h"
 #include "renderer/render.h"
 #include "tests/renderer/test_scenes.h"
+#include "tests/temporary_folder.h"
 
 namespace raytree {
 namespace {
@@ -17,17 +18,7 @@ using namespace test;
 
 class MeshMaterialsTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = std::filesystem::temp_directory_path() / "raytree-materials-XXXXXX";
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
+  std::string write(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
   Rgb diffuse_of(const Scene& scene, std::uint32_t triangle) const {
     return scene.materials[scene.material_at({kFirstMeshGeometry, triangle, 0, 0, 1})].diffuse.even;
   }
@@ -44,7 +35,7 @@ class MeshMaterialsTest : public ::testing::Test {
     return scene;
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 // A quad, a triangle, a pentagon and a triangle: 1, 2, 3 and 1 triangles behind each other.

@@ -7,6 +7,7 @@
 #include "renderer/scene.h"
 #include "renderer/scene_reader.h"
 #include "tests/reader_checks.h"
+#include "tests/temporary_folder.h"
 
 namespace raytree {
 namespace {
@@ -83,15 +84,13 @@ TEST(Subdivision, KeysAreStrict) {
 }
 
 TEST(Subdivision, TagsOfAFileCountWhereTheSceneSubdivides) {
-  std::string pattern = std::filesystem::temp_directory_path() / "raytree-subdivision-XXXXXX";
-  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-  const std::filesystem::path folder(pattern);
-  std::ofstream(folder / "square.obj")
-      << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nt interpolateboundary 1/0/0 1\n";
+  const test::TemporaryFolder folder;
+  folder.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nt interpolateboundary 1/0/0 1\n");
   const auto scene = [&](const std::string& members, Warnings& warnings) {
     const std::string text =
         R"({"raytree": 1, "shapes": {"square": {"type": "mesh", "file": "square.obj")" + members + "}}}";
-    return prepare(read_scene(text, "s.json", folder.string()), PrepareOptions(), warnings).summary.shapes.at(0);
+    return prepare(read_scene(text, "s.json", folder.folder().string()), PrepareOptions(), warnings)
+        .summary.shapes.at(0);
   };
   Warnings warnings;
   // With the tags, corners stay; the scene's rule is the stronger one, and rounds them: (4 p + e1 + e2) / 6.
@@ -100,7 +99,6 @@ TEST(Subdivision, TagsOfAFileCountWhereTheSceneSubdivides) {
   EXPECT_TRUE(warnings.empty());
   EXPECT_EQ(scene("", warnings).triangles, 2u);
   EXPECT_EQ(test::found_warning(warnings, "subdivision tags not used"), "1 x1");
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
