@@ -8,6 +8,14 @@
 
 namespace raytree {
 
+/// With a capital, unless a symbol like k_d heads it, and a period.
+inline std::string sentence(std::string_view text) {
+  std::string out(text);
+  if (!out.empty() && out[0] >= 'a' && out[0] <= 'z' && (out.size() < 2 || out[1] != '_'))
+    out[0] = static_cast<char>(out[0] - 'a' + 'A');
+  return out + ".";
+}
+
 class SceneValueWriter {
  public:
   explicit SceneValueWriter(JsonWriter& out) : out_(out) {}
