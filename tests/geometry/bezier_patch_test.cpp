@@ -101,17 +101,7 @@ TEST(BezierPatch, DerivativesAreThoseOfTheirPoints) {
   for (int n = 0; n < 100; ++n) {
     const BezierPatch patch = random_patch(random, n % 2 == 1);
     const double u = parameter(random), v = parameter(random);
-    const PatchDerivatives at = evaluate(patch, u, v);
-    // Central differences: off by h^2 / 6 times a third derivative (below 1e4 for such weights) and 1e-15 / h.
-    const double h = 1e-5, tolerance = 1e-6;
-    const PatchDerivatives right = evaluate(patch, u + h, v), left = evaluate(patch, u - h, v),
-                           up = evaluate(patch, u, v + h), down = evaluate(patch, u, v - h);
-    EXPECT_LE(((right.position - left.position) / (2 * h) - at.du).length(), tolerance);
-    EXPECT_LE(((up.position - down.position) / (2 * h) - at.dv).length(), tolerance);
-    EXPECT_LE(((right.du - left.du) / (2 * h) - at.duu).length(), tolerance);
-    EXPECT_LE(((up.du - down.du) / (2 * h) - at.duv).length(), tolerance);
-    EXPECT_LE(((right.dv - left.dv) / (2 * h) - at.duv).length(), tolerance);
-    EXPECT_LE(((up.dv - down.dv) / (2 * h) - at.dvv).length(), tolerance);
+    expect_derivatives_of_points(patch, u, v);
   }
 }
 
