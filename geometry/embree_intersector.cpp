@@ -1,5 +1,7 @@
 #include "geometry/embree_intersector.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -59,6 +61,34 @@ void load_rays(const RayBatch& rays, std::size_t first, const float* max_distanc
   }
 }
 
+/// By how much, relative to a distance along a ray, bounds are missed before a ray is said to miss them: each distance
+/// is off by two roundings, and Embree's own test in its robust mode by a few more.
+constexpr float kBoundsSlack = 0x1p-20f;
+
+/// Whether any of a packet's live rays may meet the bounds; never false for one that Embree would find something for.
+/// Rays into the open, or whose way ends before what Embree holds, are worth no call.
+template <int Width, class Ray>
+bool may_meet(const embree::SceneBounds& bounds, const Ray& ray, const int* valid) {
+  int may = 0;
+  for (int i = 0; i < Width; ++i) {
+    const float origin[3] = {ray.org_x[i], ray.org_y[i], ray.org_z[i]};
+    const float direction[3] = {ray.dir_x[i], ray.dir_y[i], ray.dir_z[i]};
+    float enters = 0, leaves = ray.tfar[i];
+    for (int axis = 0; axis < 3; ++axis) {
+      const float inverse = 1 / direction[axis];
+      const float to_least = (bounds.least[axis] - origin[axis]) * inverse,
+                  to_most = (bounds.most[axis] - origin[axis]) * inverse;
+      // Along a slab's very border 0 times infinity is not a number: it fails all comparisons, and the ray may meet.
+      const float first = to_least < to_most ? to_least : to_most, last = to_least < to_most ? to_most : to_least;
+      enters = first > enters ? first : enters;
+      leaves = last < leaves ? last : leaves;
+    }
+    const bool misses = enters > leaves + std::abs(leaves) * kBoundsSlack;
+    may |= valid[i] & (misses ? 0 : -1);
+  }
+  return may != 0;
+}
+
 /// Whether a packet's rays run so much alike that following them together is faster. Lanes that are not live count.
 template <int Width, class Ray>
 bool runs_alike(const Ray& ray) {
@@ -75,14 +105,20 @@ inline InstanceId instance_of(unsigned int embree_id, GeometryId first_instance)
 
 /// `Instanced`: the scene has instances, the first of them of Embree's id `first_instance`.
 template <int Width, bool Instanced>
-void intersect_packets(RTCScene scene, const RayBatch& rays, Coherence coherence, const float* max_distance,
-                       GeometryId first_instance, HitBatch& hits) noexcept {
+void intersect_packets(RTCScene scene, const embree::SceneBounds& bounds, const RayBatch& rays, Coherence coherence,
+                       const float* max_distance, GeometryId first_instance, HitBatch& hits) noexcept {
   Query query(coherence == Coherence::coherent);
   alignas(64) int valid[Width];
   typename PacketTypes<Width>::RayHit packet;
   set_constant_fields<Width>(packet.ray);
   for (std::size_t first = 0; first < rays.size; first += Width) {
     load_rays<Width>(rays, first, max_distance, packet.ray, valid);
+    if (!may_meet<Width>(bounds, packet.ray, valid)) {
+      std::fill_n(hits.geometry + first, Width, kNoGeometry);
+      std::copy_n(max_distance + first, Width, hits.distance + first);
+      if constexpr (Instanced) std::fill_n(hits.instance + first, Width, kNoInstance);
+      continue;
+    }
     for (int i = 0; i < Width; ++i) embree::clear_hit(packet.hit, i);
     if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet.ray));
     query.intersect(scene, valid, packet);
@@ -97,13 +133,18 @@ void intersect_packets(RTCScene scene, const RayBatch& rays, Coherence coherence
 }
 
 template <int Width>
-void occluded_packets(RTCScene scene, const RayBatch& rays, Coherence coherence, std::uint8_t* occluded) noexcept {
+void occluded_packets(RTCScene scene, const embree::SceneBounds& bounds, const RayBatch& rays, Coherence coherence,
+                      std::uint8_t* occluded) noexcept {
   Query query(coherence == Coherence::coherent);
   alignas(64) int valid[Width];
   typename PacketTypes<Width>::Ray packet;
   set_constant_fields<Width>(packet);
   for (std::size_t first = 0; first < rays.size; first += Width) {
     load_rays<Width>(rays, first, rays.max_distance, packet, valid);
+    if (!may_meet<Width>(bounds, packet, valid)) {
+      std::fill_n(occluded + first, Width, std::uint8_t(0));
+      continue;
+    }
     if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet));
     query.occluded(scene, valid, packet);
     // Embree marks an occluded ray by tfar = -infinity; a lane that was not live counts as open.
@@ -162,6 +203,22 @@ embree::SceneHandle scene_of(RTCDevice device, const BoundedShapes& shapes, cons
     });
   }
   return handle;
+}
+
+/// Of a committed scene.
+embree::SceneBounds bounds_of(RTCScene scene) {
+  RTCBounds box;
+  rtcGetSceneBounds(scene, &box);
+  const float least[3] = {box.lower_x, box.lower_y, box.lower_z}, most[3] = {box.upper_x, box.upper_y, box.upper_z};
+  embree::SceneBounds bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float slack = kBoundsSlack * std::max(std::abs(least[axis]), std::abs(most[axis]));
+    bounds.least[axis] = least[axis] - slack;
+    bounds.most[axis] = most[axis] + slack;
+    // An empty scene's bounds are infinite, the wrong way round.
+    if (!(least[axis] <= most[axis])) bounds.least[axis] = 1, bounds.most[axis] = -1;
+  }
+  return bounds;
 }
 
 void commit(RTCScene scene, const std::atomic<bool>* stop) {
@@ -238,6 +295,7 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
   }
   commit(state.scene.get(), options.stop);
   throw_if_failed(state, options.stop);
+  state.bounds = bounds_of(state.scene.get());
 }
 
 EmbreeIntersector::~EmbreeIntersector() = default;
@@ -250,7 +308,7 @@ void EmbreeIntersector::nearest_bounded(const RayBatch& rays, Coherence coherenc
     hits.clear_instances();
   const auto run = state_->wide ? (state_->instanced ? intersect_packets<8, true> : intersect_packets<8, false>)
                                 : (state_->instanced ? intersect_packets<4, true> : intersect_packets<4, false>);
-  run(state_->scene.get(), rays, state_->told(coherence), max_distance, state_->first_instance, hits);
+  run(state_->scene.get(), state_->bounds, rays, state_->told(coherence), max_distance, state_->first_instance, hits);
 }
 
 void EmbreeIntersector::intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept {
@@ -269,7 +327,7 @@ void EmbreeIntersector::intersect(const RayBatch& rays, Coherence coherence, Hit
 
 void EmbreeIntersector::occluded(const RayBatch& rays, Coherence coherence, std::uint8_t* occluded) const noexcept {
   const auto run = state_->wide ? occluded_packets<8> : occluded_packets<4>;
-  run(state_->scene.get(), rays, state_->told(coherence), occluded);
+  run(state_->scene.get(), state_->bounds, rays, state_->told(coherence), occluded);
   if (!state_->few.any()) return;
   thread_local FewHits few;
   intersect_few(state_->few, rays, few);

@@ -12,6 +12,16 @@
 
 namespace raytree {
 
+namespace embree {
+
+/// What holds all that Embree holds, enlarged by what rounding may take from a test of it. Empty (least above most):
+/// nothing.
+struct SceneBounds {
+  float least[3], most[3];
+};
+
+}  // namespace embree
+
 struct EmbreeIntersector::State {
   const ShapeSet* shapes = nullptr;
   FewShapes few;  ///< that Embree does not hold
@@ -23,6 +33,7 @@ struct EmbreeIntersector::State {
   /// One a group that has shapes and is used; before `scene`, so that they outlive it.
   std::vector<embree::SceneHandle> groups;
   embree::SceneHandle scene;
+  embree::SceneBounds bounds;     ///< of `scene`
   GeometryId first_instance = 0;  ///< Embree's id of ShapeSet::instances[0]
   bool instanced = false;
   bool together = true;  ///< see follows_packets_together()

@@ -15,24 +15,18 @@ std::unique_ptr<std::byte[], AlignedDelete> batch_storage(std::size_t arrays, st
 
 }  // namespace detail
 
-namespace {
-
-std::size_t padded_capacity(std::size_t capacity) { return (capacity / kBatchPadding + 1) * kBatchPadding; }
-
-}  // namespace
-
 RayBatch::RayBatch(std::size_t capacity)
-    : capacity_(capacity), storage_(detail::batch_storage(7, padded_capacity(capacity))) {
+    : capacity_(capacity), storage_(detail::batch_storage(7, detail::padded_capacity(capacity))) {
   auto* next = reinterpret_cast<float*>(storage_.get());
   for (float** array : {&origin_x, &origin_y, &origin_z, &direction_x, &direction_y, &direction_z, &max_distance}) {
     *array = next;
-    next += padded_capacity(capacity);
+    next += detail::padded_capacity(capacity);
   }
 }
 
 HitBatch::HitBatch(std::size_t capacity)
-    : capacity_(capacity), storage_(detail::batch_storage(6, padded_capacity(capacity))) {
-  const std::size_t padded = padded_capacity(capacity);
+    : capacity_(capacity), storage_(detail::batch_storage(6, detail::padded_capacity(capacity))) {
+  const std::size_t padded = detail::padded_capacity(capacity);
   auto* block = reinterpret_cast<std::uint32_t*>(storage_.get());
   geometry = block;
   primitive = block + padded;

@@ -15,10 +15,14 @@ namespace raytree {
 inline constexpr std::size_t kBatchAlignment = 64;  ///< bytes; every array of a batch begins on such a border
 inline constexpr std::size_t kBatchPadding = 16;    ///< a batch may be read in full packets of up to so many rays
 
+inline constexpr std::size_t kBatchSize = 1024;  ///< rays that the ray tree has in flight at once
+
 namespace detail {
 struct AlignedDelete {
   void operator()(std::byte* block) const { ::operator delete[](block, std::align_val_t(kBatchAlignment)); }
 };
+/// Elements of an array that holds `capacity` and the padding behind them.
+constexpr std::size_t padded_capacity(std::size_t capacity) { return (capacity / kBatchPadding + 1) * kBatchPadding; }
 /// Zeroed storage of `arrays` arrays of `padded` 4-byte elements.
 std::unique_ptr<std::byte[], AlignedDelete> batch_storage(std::size_t arrays, std::size_t padded);
 }  // namespace detail

@@ -36,7 +36,7 @@ struct SurfacePoint {
   Vec3f shading_normal;    ///< unit; the same side as geometric_normal where the mesh's normals are sane
   float clearance = 0;     ///< distance along the geometric normal at which a new ray starts
   float distance = 0;      ///< along the ray
-  Vec2f texture;           ///< texture coordinates; (0, 0) where the shape has none
+  Vec2f texture{0, 0};     ///< texture coordinates; (0, 0) where the shape has none
 };
 
 inline Vec3f unit(const Vec3f& v) { return v * (1 / std::sqrt(v.dot(v))); }
@@ -52,36 +52,70 @@ Vec renormalized(const Vec& v) {
 
 namespace detail {
 
+/// std::max and std::min by value: through references, g++ makes branches of them that keep loops from being
+/// vectorized.
+inline float larger(float a, float b) { return a < b ? b : a; }
+inline double larger(double a, double b) { return a < b ? b : a; }
+inline float smaller(float a, float b) { return b < a ? b : a; }
+/// Of three numbers' sizes.
+inline float largest_size(float x, float y, float z) { return larger(std::abs(x), larger(std::abs(y), std::abs(z))); }
+
 /// Distance from which a new ray starts, for a point computed from coordinates of up to `largest` per component. Per
 /// component, since a horizontal floor of 1e4 units has next to no error in height, however wide it is.
 inline float clearance(const Vec3f& normal, const Vec3f& largest) {
   return kSurfaceError *
          (std::abs(normal.x) * largest.x + std::abs(normal.y) * largest.y + std::abs(normal.z) * largest.z +
-          kLeastError * std::max(largest.x, std::max(largest.y, largest.z)));
+          kLeastError * larger(largest.x, larger(largest.y, largest.z)));
+}
+
+/// Where a ray meets a sphere: what SurfacePoint says of it.
+struct SphereSolution {
+  float x, y, z;                       ///< position
+  float normal_x, normal_y, normal_z;  ///< unit
+  float clearance, distance;
+};
+
+/// The intersector says which sphere and, by the distance, which of its two sides; where exactly is solved again in
+/// double, by way of the ray's closest point to the center, which keeps its digits for far and small spheres. Written
+/// in components and without branches, so that a loop over many hits is vectorized.
+inline SphereSolution solve_sphere(double center_x, double center_y, double center_z, double radius, double origin_x,
+                                   double origin_y, double origin_z, double dx, double dy, double dz,
+                                   float hit_distance) {
+  // 1 / d.d to first order: d is unit but for float's rounding, whose square is under double's.
+  const double inverse_square = 2 - (dx * dx + dy * dy + dz * dz);
+  const double to_x = center_x - origin_x, to_y = center_y - origin_y, to_z = center_z - origin_z;
+  const double along = (to_x * dx + to_y * dy + to_z * dz) * inverse_square;
+  const double closest_x = dx * along - to_x, closest_y = dy * along - to_y, closest_z = dz * along - to_z;
+  const double closest_square = closest_x * closest_x + closest_y * closest_y + closest_z * closest_z;
+  const double chord_square = (radius * radius - closest_square) * inverse_square;
+  const double half_chord = std::sqrt(chord_square > 0 ? chord_square : 0.0);
+  const double near = along - half_chord, far = along + half_chord;
+  const bool takes_near = std::abs(near - hit_distance) <= std::abs(far - hit_distance);
+  const double step = takes_near ? -half_chord : half_chord, distance = takes_near ? near : far;
+  const double x = closest_x + dx * step, y = closest_y + dy * step, z = closest_z + dz * step;  // from the center
+  // A ray that grazes the sphere within the intersector's error has no chord: its closest point lies off the surface.
+  const double length = half_chord > 0 ? radius : std::sqrt(x * x + y * y + z * z);
+  const double scale = 1 / length;
+  const double nx = x * scale, ny = y * scale, nz = z * scale;
+  const double xy = larger(std::abs(center_x), std::abs(center_y));
+  return {static_cast<float>(center_x + nx * radius),
+          static_cast<float>(center_y + ny * radius),
+          static_cast<float>(center_z + nz * radius),
+          static_cast<float>(nx),
+          static_cast<float>(ny),
+          static_cast<float>(nz),
+          static_cast<float>(kSurfaceError * (larger(xy, std::abs(center_z)) + radius)),
+          static_cast<float>(distance > 0 ? distance : 0.0)};
 }
 
 inline void sphere_surface(const Vec3d& center, double radius, const Vec3f& origin, const Vec3f& direction,
                            const Hit& hit, SurfacePoint& point) {
-  // The intersector says which sphere and which of its two sides; where exactly is solved again in double, by way of
-  // the ray's closest point to the center, which keeps its digits for far and small spheres.
-  const Vec3d o(origin), d(direction);
-  const Vec3d to_center = center - o;
-  // 1 / d.d to first order: d is unit but for float's rounding, whose square is under double's.
-  const double inverse_square = 2 - d.dot(d);
-  const double along = to_center.dot(d) * inverse_square;
-  const Vec3d closest = d * along - to_center;  // from the center
-  const double half_chord = std::sqrt(std::max(0.0, (radius * radius - closest.dot(closest)) * inverse_square));
-  const double near = along - half_chord, far = along + half_chord;
-  const bool takes_near = std::abs(near - hit.distance) <= std::abs(far - hit.distance);
-  const Vec3d from_center = closest + d * (takes_near ? -half_chord : half_chord);
-  // A ray that grazes the sphere within the intersector's error has no chord: its closest point lies off the surface.
-  const Vec3d normal = half_chord > 0 ? from_center * (1 / radius) : unit(from_center);
-
-  point.geometric_normal = point.shading_normal = Vec3f(normal);
-  point.position = Vec3f(center + normal * radius);
-  const double largest = std::max(std::abs(center.x), std::max(std::abs(center.y), std::abs(center.z)));
-  point.clearance = static_cast<float>(kSurfaceError * (largest + radius));
-  point.distance = static_cast<float>(std::max(0.0, takes_near ? near : far));
+  const SphereSolution s = solve_sphere(center.x, center.y, center.z, radius, origin.x, origin.y, origin.z, direction.x,
+                                        direction.y, direction.z, hit.distance);
+  point.position = {s.x, s.y, s.z};
+  point.geometric_normal = point.shading_normal = {s.normal_x, s.normal_y, s.normal_z};
+  point.clearance = s.clearance;
+  point.distance = s.distance;
 }
 
 inline void flat_surface(const Vec3d& through, const Vec3d& normal, const Vec3f& origin, const Vec3f& direction,
@@ -146,54 +180,82 @@ inline void plane_surface(const ShapeSet& shapes, const Vec3f& origin, const Vec
   flat_surface(plane.point, plane.normal, origin, direction, hit, point);
 }
 
-inline void triangle_surface(const TriangleMesh& mesh, const Hit& hit, bool texture, SurfacePoint& point) {
-  const std::uint32_t* corner = &mesh.corners[std::size_t(hit.primitive) * 3];
-  const Vec3f &a = mesh.positions[corner[0]], &b = mesh.positions[corner[1]], &c = mesh.positions[corner[2]];
-  const float u = hit.u, v = hit.v, w = 1 - u - v;
+/// What SurfacePoint says of a point of a triangle, but for what its vertices interpolate.
+struct TriangleSolution {
+  Vec3f position;
+  Vec3f normal;  ///< unit; void unless in_range
+  float clearance;
+  bool in_range;  ///< the squares of its edges stay within float's range
+};
 
-  point.position = a * w + b * u + c * v;
+/// `u`, `v`: weights of b and c. Without branches, so that a loop over many hits is vectorized.
+inline TriangleSolution solve_triangle(const Vec3f& a, const Vec3f& b, const Vec3f& c, float u, float v) {
+  TriangleSolution result;
+  const float w = 1 - u - v;
+  result.position = a * w + b * u + c * v;
   // The cross product of two edges, its two products apart: the larger they are beside their difference, the less its
   // direction is worth.
   const Vec3f e = b - a, f = c - a;
   const Vec3f plus(e.y * f.z, e.z * f.x, e.x * f.y), minus(e.z * f.y, e.x * f.z, e.y * f.x);
   const Vec3f normal = plus - minus;
   const float length_squared = normal.dot(normal);
-  // Squares of very short or very long edges leave float's range.
-  const bool in_range = length_squared > 0x1p-100f && length_squared <= std::numeric_limits<float>::max();
+  result.in_range = (length_squared > 0x1p-100f) & (length_squared <= std::numeric_limits<float>::max());
   const float over_length = 1 / std::sqrt(length_squared);
-  point.geometric_normal = in_range ? normal * over_length : Vec3f(unit(Vec3d(e).cross(Vec3d(f))));
-
-  const auto largest = [](float x, float y, float z) {
-    return std::max(std::abs(x), std::max(std::abs(y), std::abs(z)));
-  };
-  point.clearance =
-      clearance(point.geometric_normal, {largest(a.x, b.x, c.x), largest(a.y, b.y, c.y), largest(a.z, b.z, c.z)});
+  result.normal = normal * over_length;
+  const Vec3f coordinates(largest_size(a.x, b.x, c.x), largest_size(a.y, b.y, c.y), largest_size(a.z, b.z, c.z));
   const Vec3f reach(std::abs(e.x) + std::abs(f.x), std::abs(e.y) + std::abs(f.y), std::abs(e.z) + std::abs(f.z));
   const float turned = (std::abs(plus.x) + std::abs(minus.x)) * reach.x +
                        (std::abs(plus.y) + std::abs(minus.y)) * reach.y +
                        (std::abs(plus.z) + std::abs(minus.z)) * reach.z;
-  if (in_range)
-    point.clearance +=
-        std::min(kNormalError * turned * over_length, kMostNormalError * std::max(reach.x, std::max(reach.y, reach.z)));
-  point.distance = hit.distance;
+  result.clearance =
+      clearance(result.normal, coordinates) +
+      smaller(kNormalError * turned * over_length, kMostNormalError * larger(reach.x, larger(reach.y, reach.z)));
+  return result;
+}
 
-  point.shading_normal = point.geometric_normal;
+/// The unit normal of a triangle whose edges' squares leave float's range, and the clearance from it.
+void solve_extreme_triangle(const Vec3f& a, const Vec3f& b, const Vec3f& c, TriangleSolution& solution);
+
+/// The mean of vertex normals, unit; where they cancel (catalogue of failures: interpolated normal -> 0) the facet's
+/// own, which is always there.
+inline Vec3f interpolated_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c, float u, float v, const Vec3f& facet) {
+  const Vec3f mean = a * (1 - u - v) + b * u + c * v;
+  const float square = mean.dot(mean);
+  const float over_length = 1 / std::sqrt(square);
+  const bool is_sane = (square > 1e-12f) & (square <= std::numeric_limits<float>::max());
+  return {is_sane ? mean.x * over_length : facet.x, is_sane ? mean.y * over_length : facet.y,
+          is_sane ? mean.z * over_length : facet.z};
+}
+
+/// Texture coordinates at a hit on a mesh that has some.
+inline Vec2f texture_at(const TriangleMesh& mesh, const Hit& hit) {
+  const Buffer<std::uint32_t>& corners = mesh.texture_corners.empty() ? mesh.corners : mesh.texture_corners;
+  const std::uint32_t* index = &corners[std::size_t(hit.primitive) * 3];
+  return mesh.texture_coordinates[index[0]] * (1 - hit.u - hit.v) + mesh.texture_coordinates[index[1]] * hit.u +
+         mesh.texture_coordinates[index[2]] * hit.v;
+}
+
+/// Indices of the triangle's three vertex normals.
+inline const std::uint32_t* normal_corners(const TriangleMesh& mesh, std::uint32_t triangle) {
+  return mesh.normal_corners.empty() ? &mesh.corners[std::size_t(triangle) * 3]
+                                     : &mesh.normal_corners[std::size_t(triangle) * 3];
+}
+
+inline void triangle_surface(const TriangleMesh& mesh, const Hit& hit, bool texture, SurfacePoint& point) {
+  const std::uint32_t* corner = &mesh.corners[std::size_t(hit.primitive) * 3];
+  const Vec3f &a = mesh.positions[corner[0]], &b = mesh.positions[corner[1]], &c = mesh.positions[corner[2]];
+  TriangleSolution solution = solve_triangle(a, b, c, hit.u, hit.v);
+  if (!solution.in_range) solve_extreme_triangle(a, b, c, solution);
+  point.position = solution.position;
+  point.geometric_normal = point.shading_normal = solution.normal;
+  point.clearance = solution.clearance;
+  point.distance = hit.distance;
   if (!mesh.normals.empty()) {
-    const std::uint32_t* index =
-        mesh.normal_corners.empty() ? corner : &mesh.normal_corners[std::size_t(hit.primitive) * 3];
-    const Vec3f mean = mesh.normals[index[0]] * w + mesh.normals[index[1]] * u + mesh.normals[index[2]] * v;
-    const float square = mean.dot(mean);
-    // Opposite vertex normals cancel (catalogue of failures: interpolated normal -> 0); the facet's own is always
-    // there.
-    if (square > 1e-12f && square <= std::numeric_limits<float>::max())
-      point.shading_normal = mean * (1 / std::sqrt(square));
+    const std::uint32_t* index = normal_corners(mesh, hit.primitive);
+    point.shading_normal = interpolated_normal(mesh.normals[index[0]], mesh.normals[index[1]], mesh.normals[index[2]],
+                                               hit.u, hit.v, solution.normal);
   }
-  if (texture && !mesh.texture_coordinates.empty()) {
-    const std::uint32_t* index =
-        mesh.texture_corners.empty() ? corner : &mesh.texture_corners[std::size_t(hit.primitive) * 3];
-    point.texture = mesh.texture_coordinates[index[0]] * w + mesh.texture_coordinates[index[1]] * u +
-                    mesh.texture_coordinates[index[2]] * v;
-  }
+  if (texture && !mesh.texture_coordinates.empty()) point.texture = texture_at(mesh, hit);
 }
 
 }  // namespace detail

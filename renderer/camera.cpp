@@ -1,5 +1,6 @@
 #include "renderer/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -47,6 +48,30 @@ Camera::Camera(const CameraDescription& description, int width, int height, cons
   up_ = Vec3f(up * pixel);
   center_x_ = static_cast<float>(width) / 2;
   center_y_ = static_cast<float>(height) / 2;
+}
+
+void Camera::rays(std::span<const Vec2f> positions, const Vec3Pointers<float>& origins,
+                  const Vec3Pointers<float>& directions) const {
+  const Camera camera = *this;  // which nothing that is written can change
+  for (std::size_t first = 0; first < positions.size(); first += kLanes) {
+    Lanes x = {}, y = {};
+    for (std::size_t i = 0; i < std::min(kLanes, positions.size() - first); ++i)
+      x[i] = positions[first + i].x, y[i] = positions[first + i].y;
+    Vec3Lanes origin, direction;
+    const auto find = [&]<bool perspective>() {
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const Eye eye = camera.eye<perspective>(x[i], y[i]);
+        origin.set(i, eye.origin);
+        direction.set(i, eye.direction);
+      }
+    };
+    if (perspective_)
+      find.operator()<true>();
+    else
+      find.operator()<false>();
+    origins.store(first, origin);
+    directions.store(first, direction);
+  }
 }
 
 bool Camera::project(const Vec3d& point, Vec2d& image) const {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 #include <string>
 
+#include "geometry/lanes.h"
 #include "geometry/vec.h"
 #include "renderer/scene_description.h"
 
@@ -24,16 +26,14 @@ class Camera {
   /// The ray through image position (x, y) in pixels: (0, 0) is the frame's upper left corner, y downwards; pixel
   /// centers lie at halves. Direction is unit.
   void ray(float x, float y, Vec3f& origin, Vec3f& direction) const {
-    const float right = x - center_x_, up = center_y_ - y;
-    if (perspective_) {
-      const Vec3f through = forward_ + right_ * right + up_ * up;
-      origin = position_;
-      direction = through * (1 / std::sqrt(through.dot(through)));
-    } else {
-      origin = position_ + right_ * right + up_ * up;
-      direction = forward_;
-    }
+    const Eye found = perspective_ ? eye<true>(x, y) : eye<false>(x, y);
+    origin = found.origin;
+    direction = found.direction;
   }
+
+  /// The same of many positions: into [0, positions.size()), and as far behind as batches are padded.
+  void rays(std::span<const Vec2f> positions, const Vec3Pointers<float>& origins,
+            const Vec3Pointers<float>& directions) const;
 
   /// How far the rays one pixel to the right and one pixel up are from this one, of unit `direction`, at `distance`
   /// along it: exact to the first order but for a part along the ray itself.
@@ -51,6 +51,17 @@ class Camera {
   const Vec3f& forward() const { return forward_; }    ///< unit
 
  private:
+  struct Eye {
+    Vec3f origin, direction;
+  };
+  template <bool perspective>
+  Eye eye(float x, float y) const {
+    const Vec3f across = right_ * (x - center_x_), upward = up_ * (center_y_ - y);
+    if constexpr (!perspective) return {position_ + across + upward, forward_};
+    const Vec3f through = forward_ + across + upward;
+    return {position_, through * (1 / std::sqrt(through.dot(through)))};
+  }
+
   bool perspective_ = true;
   Vec3f position_{0, 0, 0};             ///< scene space
   Vec3f forward_{0, 0, -1};             ///< unit

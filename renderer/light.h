@@ -14,6 +14,13 @@
 
 namespace raytree {
 
+/// Unit direction from `point` to `place`, and the distance.
+inline Vec3f direction_to(const Vec3f& place, const Vec3f& point, float& distance) {
+  const Vec3f to_place = place - point;
+  distance = std::sqrt(to_place.dot(to_place));
+  return to_place * (1 / distance);
+}
+
 struct Light {
   Rgb color;
   bool directional = true;
@@ -31,9 +38,7 @@ struct Light {
       distance = std::numeric_limits<float>::infinity();
       return place;
     }
-    const Vec3f to_light = place - point;
-    distance = std::sqrt(to_light.dot(to_light));
-    return to_light * (1 / distance);
+    return direction_to(place, point, distance);
   }
 
   /// Share of `color` that arrives over `distance` from unit `direction` (to the light): in [0, largest_strength()].

@@ -17,13 +17,19 @@ Vec reflected_direction(const Vec& direction, const Vec& normal) {
   return renormalized(direction - normal * (2 * direction.dot(normal)));
 }
 
+/// Square of what refracted_cosine() yields; not above 0 at total internal reflection.
+template <class Real>
+Real refracted_cosine_square(Real cos_i, Real eta) {
+  return 1 - eta * eta * std::max(Real(0), 1 - cos_i * cos_i);
+}
+
 /// Cosine of the angle of refraction, by Snell's law sin t = eta sin i; none at total internal reflection. `eta`: 1 /
 /// k_n, the index of the side that the ray comes from over that of the side it enters. cos_i in [0, 1].
 template <class Real>
 std::optional<Real> refracted_cosine(Real cos_i, Real eta) {
-  const Real sin_t_squared = eta * eta * std::max(Real(0), 1 - cos_i * cos_i);
-  if (sin_t_squared >= 1) return std::nullopt;
-  return std::sqrt(1 - sin_t_squared);
+  const Real square = refracted_cosine_square(cos_i, eta);
+  if (!(square > 0)) return std::nullopt;
+  return std::sqrt(square);
 }
 
 /// Refracted direction, unit, of a ray whose cosines are known. Equals Whitted's P = k_f (N + V') - N made unit,
@@ -51,11 +57,10 @@ Real fresnel_reflectance(Real cos_i, Real cos_t, Real relative_index) {
   const Real s_sum = cos_i + relative_index * cos_t, p_sum = relative_index * cos_i + cos_t;
   // One division serves both. Grazing along a surface of index 1 makes both sums 0: all is reflected.
   const Real product = s_sum * p_sum;
-  if (!(product > 0)) return 1;
   const Real inverse = 1 / product;
   const Real s = (cos_i - relative_index * cos_t) * p_sum * inverse;
   const Real p = (relative_index * cos_i - cos_t) * s_sum * inverse;
-  return (s * s + p * p) / 2;
+  return product > 0 ? (s * s + p * p) / 2 : Real(1);
 }
 
 /// The same from cos_i in [0, 1]; 1 at total internal reflection.
@@ -69,7 +74,7 @@ Real fresnel_reflectance(Real cos_i, Real relative_index) {
 /// sent to the other side is mirrored back. Continuous: at the surface's plane both agree.
 inline Vec3f kept_on_side(const Vec3f& direction, const Vec3f& side) {
   const float height = direction.dot(side);
-  return height >= 0 ? direction : direction - side * (2 * height);
+  return direction - side * (height >= 0 ? 0.0f : 2 * height);
 }
 
 }  // namespace raytree

@@ -4,13 +4,17 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 
+#include "geometry/surface_batch.h"
 #include "renderer/features.h"
 #include "renderer/media.h"
+#include "renderer/ray_queue.h"
 #include "renderer/rough_surface.h"
 #include "renderer/shading.h"
+#include "renderer/shading_batch.h"
 #include "renderer/shadow_path.h"
 
 namespace raytree {
@@ -22,33 +26,13 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// A ray of the tree that waits for its turn.
-struct PendingRay {
-  Vec3f origin;
-  float allowance;  ///< what may still be cut off below it, radiance
-  Vec3f direction;
-  std::uint16_t sample;  ///< in the chunk
-  MediaId media;         ///< that it is in, where media are tracked
-  Rgb weight;            ///< of what it brings in its sample
-  std::uint32_t level;   ///< the eye ray is 1
-};
-static_assert(sizeof(PendingRay) == 48);
-static_assert(kBatchSize <= std::size_t(1) << 16);
-
-/// A hit of the batch under way, with the context of its ray.
-struct BatchPoint {
-  ShadingPoint shading;
-  Rgb weight;
-  float allowance;
-  std::uint16_t sample;
-  std::uint32_t level;
-};
+static_assert(kBatchSize <= std::size_t(1) << 16, "a ray's sample is a 16-bit number");
 
 /// What a batch spawns, before it joins the pending rays: by kind, so that neighbours in a packet run much the same
 /// way. With the rays' paths where some surface is rough.
 struct NewRays {
-  std::vector<PendingRay> reflected, refracted;
-  std::vector<PendingRay> passed;  ///< that met a surface which separates nothing
+  SpawnedRays reflected, refracted;
+  SpawnedRays passed;  ///< that met a surface which separates nothing
   std::vector<TreePath> reflected_paths, refracted_paths, passed_paths;
 };
 
@@ -87,18 +71,9 @@ struct SampleTracer::State {
         occluded(kBatchSize + kBatchPadding),
         shadow_samples(kBatchSize),
         shadow_light(kBatchSize),
-        eye_rays(kBatchSize),
-        hit_rays(kBatchSize),
+        pending((4 + (tracks_paths() ? 2 * static_cast<std::size_t>(settings.rough_samples) : 0)) * kBatchSize),
         points(kBatchSize) {
-    const std::size_t split_batches = tracks_paths() ? 2 * static_cast<std::size_t>(settings.rough_samples) : 0;
-    pending.reserve((4 + split_batches) * kBatchSize);
-    new_rays.reflected.reserve(kBatchSize);
-    new_rays.refracted.reserve(kBatchSize);
-    if (tracks_paths()) {
-      pending_paths.reserve(pending.capacity());
-      eye_paths.resize(kBatchSize);
-      point_paths.resize(kBatchSize);
-    }
+    if (tracks_paths()) pending_paths.reserve(pending.capacity());
     for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
     instanced = !scene.shapes->instances.empty();
     if (follows_shadows()) shadow_paths.emplace(scene, kBatchSize);
@@ -114,29 +89,38 @@ struct SampleTracer::State {
   }
 
   bool trace(std::span<const Vec2f> positions, float spacing);
-  void begin_sample(std::size_t i, const Vec2f& position);
+  void begin_samples(std::span<const Vec2f> positions);
   bool tracks_media() const { return kFeatures.media && scene.tracks_media; }
   bool follows_shadows() const { return kFeatures.transparent_shadows && scene.transparent_shadows; }
   bool tracks_paths() const { return kFeatures.rough_surfaces && scene.rough_surfaces; }
   bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
   void trace_batch(Coherence coherence, bool eye);
-  void collect_hits(bool eye);
+  void find_hits();
+  void collect_points(bool eye);
   void prefetch_triangles(const ShapeSet& shapes) const;
-  std::span<const BatchPoint> batch_points() const { return {points.data(), point_count}; }
+  /// Indices in the batch of what is shaded: of the rays that hit, less those whose surface separates nothing.
+  std::span<const std::uint32_t> batch_points() const { return {points.data(), point_count}; }
+  TreePath& path(std::size_t i) { return pending_paths[pending.size() + i]; }
+  ShadingPoint shading_point(std::size_t i) const { return shading.point(rays, i); }
+  /// To the side of the geometric normal that the ray came from, or to the other.
+  Vec3f child_origin(std::size_t i, bool behind) const {
+    const Vec3f normal = shading.surfaces.geometric_normal[i];
+    return shading.surfaces.position[i] + (behind ? -normal : normal) * shading.surfaces.clearance[i];
+  }
   void find_eye_media(std::span<const Vec2f> positions);
-  bool passes(std::size_t p, const PendingRay& ray, const Hit& hit);
-  Rgb escaping_weight(const PendingRay& ray) const { return ray.weight * media->transmitted(ray.media, kInfinity); }
+  bool passes(std::size_t i, const Hit& hit);
+  Rgb escaping_weight(std::size_t i) const { return batch.weight(i) * media->transmitted(batch.media[i], kInfinity); }
   void add_lights();
   void follow_shadows(std::size_t count);
   void spawn();
-  unsigned spawn_specially(const BatchPoint& point);
-  unsigned spawn_on_path(const BatchPoint& point, float relative_index, MediaId before, MediaId after);
-  unsigned spawn_children(const BatchPoint& point, const Branches& children, float& allowance, MediaId before,
-                          MediaId after, NewRays& out);
+  unsigned spawn_specially(std::size_t i);
+  unsigned spawn_on_path(std::size_t i, const ShadingPoint& point, float relative_index, MediaId before, MediaId after);
+  unsigned spawn_children(std::size_t i, const Branches& children, float& allowance, MediaId before, MediaId after,
+                          NewRays& out);
   void cut(std::uint32_t sample, const Rgb& bound);
-  void add_children(RayKind kind, std::vector<PendingRay>& children);
+  void add_children(RayKind kind, SpawnedRays& children);
   void add_rays_on_paths();
-  void record_first_hit(const BatchPoint& point, std::uint32_t object, std::uint32_t material);
+  void record_first_hit(std::size_t i, std::uint32_t object, std::uint32_t material);
 
   const Scene& scene;
   const RenderSettings& settings;
@@ -152,20 +136,16 @@ struct SampleTracer::State {
   std::vector<std::uint32_t> shadow_samples;
   std::vector<Rgb> shadow_light;  ///< what a shadow ray brings when nothing is in its way
 
-  std::vector<PendingRay> eye_rays;      ///< contexts of the chunk's eye rays
-  const PendingRay* contexts = nullptr;  ///< [rays.size] of the batch under way; read before children are spawned
-  std::vector<std::uint32_t> hit_rays;   ///< [hit_count] index in the batch of each hit
-  std::size_t hit_count = 0;
-  std::size_t point_count = 0;      ///< hit_count, less the surfaces that separate nothing
-  std::vector<BatchPoint> points;   ///< hits of the batch under way
-  std::vector<PendingRay> pending;  ///< the newest rays are traced first
-  NewRays new_rays;                 ///< of the batch under way
+  RayQueue pending;  ///< the newest rays are traced first
+  RayArrays batch;   ///< that is under way: what `rays` is of
+  std::vector<std::uint32_t> points;
+  std::size_t point_count = 0;
+  ShadingBatch shading;
+  NewRays new_rays;  ///< of the batch under way
 
   // Where surfaces are rough, paths beside rays:
-  std::vector<TreePath> pending_paths, eye_paths;
-  const TreePath* context_paths = nullptr;  ///< [rays.size] of the batch under way
-  std::vector<TreePath> point_paths;        ///< [point_count]
-  NewRays split_rays;                       ///< that have a rough bounce behind them; these lie on top of new_rays
+  std::vector<TreePath> pending_paths;  ///< behind those of `pending` the batch's
+  NewRays split_rays;                   ///< that have a rough bounce behind them; these lie on top of new_rays
 
   bool wants_texture = false;
   SampleWindow eye_window;  ///< of the chunk's eye rays
@@ -178,47 +158,47 @@ struct SampleTracer::State {
   std::optional<MediaTable> media;
   std::vector<Solid> eye_solids;  ///< that a perspective eye lies in
   bool knows_eye_solids = false;
-  std::vector<MediaBoundary> boundaries;  ///< [point_count] what each point separates
+  std::vector<MediaBoundary> boundaries;  ///< [rays.size] what each point separates
   std::vector<MediaId> shadow_media;      ///< that shadow rays start in
 };
 
-void SampleTracer::State::begin_sample(std::size_t i, const Vec2f& position) {
-  Vec3f origin, direction;
-  scene.camera.ray(position.x, position.y, origin, direction);
-  rays.set(i, origin, direction, kInfinity);
-  eye_rays[i] = {
-      origin, static_cast<float>(settings.cutoff), direction, static_cast<std::uint16_t>(i), kNoMedia, Rgb(1), 1};
-  results.radiance[i] = Rgb();
+/// The eye rays become the first batch.
+void SampleTracer::State::begin_samples(std::span<const Vec2f> positions) {
+  pending.clear();
+  batch.size = positions.size();
+  scene.camera.rays(positions, {batch.origin_x, batch.origin_y, batch.origin_z},
+                    {batch.direction_x, batch.direction_y, batch.direction_z});
+  for (float* weights : {batch.weight_r, batch.weight_g, batch.weight_b}) std::fill_n(weights, batch.size, 1.0f);
+  std::fill_n(batch.allowance, batch.size, static_cast<float>(settings.cutoff));
+  std::fill_n(batch.level, batch.size, 1u);
+  std::fill_n(batch.media, batch.size, kNoMedia);
+  std::iota(batch.sample, batch.sample + batch.size, std::uint16_t(0));
+  if (tracks_media()) find_eye_media(positions);
+  if (tracks_paths()) {
+    pending_paths.clear();
+    for (const Vec2f& position : positions) pending_paths.push_back(TreePath::of_eye(position));
+  }
+  std::fill_n(results.radiance.begin(), positions.size(), Rgb());
+  std::fill(results.truncation.begin(), results.truncation.end(), Rgb());
+  std::fill(results.ray_counts.begin(), results.ray_counts.end(), 1u);
+  std::fill(results.first_hits.begin(), results.first_hits.end(), FirstHit());
+  statistics.rays[static_cast<int>(RayKind::primary)] += positions.size();
+  statistics.samples += positions.size();
+  statistics.deepest_level = std::max(statistics.deepest_level, 1);
 }
 
 /// Traces the eye rays of up to kBatchSize samples and all that grows from them. False: stopped.
 bool SampleTracer::State::trace(std::span<const Vec2f> positions, float spacing) {
   eye_window = {&scene.camera, spacing, settings.antialias.method == Antialiasing::Method::whitted};
-  for (std::size_t i = 0; i < positions.size(); ++i) begin_sample(i, positions[i]);
-  if (tracks_media()) find_eye_media(positions);
-  std::fill(results.truncation.begin(), results.truncation.end(), Rgb());
-  std::fill(results.ray_counts.begin(), results.ray_counts.end(), 1u);
-  std::fill(results.first_hits.begin(), results.first_hits.end(), FirstHit());
-  if (tracks_paths())
-    for (std::size_t i = 0; i < positions.size(); ++i) eye_paths[i] = TreePath::of_eye(positions[i]);
-  rays.size = positions.size();
-  statistics.rays[static_cast<int>(RayKind::primary)] += positions.size();
-  statistics.samples += positions.size();
-  statistics.deepest_level = std::max(statistics.deepest_level, 1);
-  contexts = eye_rays.data();
-  context_paths = eye_paths.data();
+  begin_samples(positions);
   trace_batch(Coherence::coherent, true);
   while (!pending.empty()) {
     if (stopped()) return false;
-    const std::size_t count = std::min(kBatchSize, pending.size());
-    contexts = pending.data() + pending.size() - count;
-    if (tracks_paths()) context_paths = pending_paths.data() + pending.size() - count;
-    for (std::size_t i = 0; i < count; ++i) {
-      const PendingRay& ray = contexts[i];
-      rays.set(i, ray.origin, ray.direction, kInfinity);
-      if (kFeatures.ray_count_channel && records.ray_counts) ++results.ray_counts[ray.sample];
-    }
-    rays.size = count;
+    pending.pop(batch);
+    const std::uint32_t deepest = *std::max_element(batch.level, batch.level + batch.size);
+    statistics.deepest_level = std::max(statistics.deepest_level, static_cast<int>(deepest));
+    if (kFeatures.ray_count_channel && records.ray_counts)
+      for (std::size_t i = 0; i < batch.size; ++i) ++results.ray_counts[batch.sample[i]];
     trace_batch(Coherence::mixed, false);
   }
   return !stopped();
@@ -226,11 +206,12 @@ bool SampleTracer::State::trace(std::span<const Vec2f> positions, float spacing)
 
 void SampleTracer::State::trace_batch(Coherence coherence, bool eye) {
   const auto start = Clock::now();
+  batch.copy_to(rays);
   scene.intersector->intersect(rays, coherence, hits);
   const auto hit = Clock::now();
   const double intersection_before = statistics.intersection_seconds;
-  collect_hits(eye);
-  if (!eye) pending.resize(pending.size() - rays.size);
+  find_hits();
+  collect_points(eye);
   add_lights();
   spawn();
   if (tracks_paths()) add_rays_on_paths();
@@ -242,13 +223,10 @@ void SampleTracer::State::trace_batch(Coherence coherence, bool eye) {
   statistics.intersection_seconds += std::chrono::duration<double>(hit - start).count();
 }
 
-void SampleTracer::State::add_children(RayKind kind, std::vector<PendingRay>& children) {
+void SampleTracer::State::add_children(RayKind kind, SpawnedRays& children) {
   if (children.empty()) return;
   statistics.rays[static_cast<int>(kind)] += children.size();
-  for (const PendingRay& child : children)
-    statistics.deepest_level = std::max(statistics.deepest_level, static_cast<int>(child.level));
-  pending.insert(pending.end(), children.begin(), children.end());
-  children.clear();
+  children.move_to(pending);
 }
 
 /// Adds what the batch spawned with its paths, the rays that have split on top of all that have not.
@@ -268,57 +246,63 @@ void SampleTracer::State::add_children(RayKind kind, std::vector<PendingRay>& ch
   }
 }
 
-void SampleTracer::State::collect_hits(bool eye) {
-  const ShapeSet& shapes = *scene.shapes;
+/// Adds the background where rays missed, and finds the surfaces where they did not.
+void SampleTracer::State::find_hits() {
   const bool media_matter = tracks_media();
-  const SampleWindow window = eye ? eye_window : SampleWindow();
-  hit_count = 0;
+  point_count = 0;
   for (std::size_t i = 0; i < rays.size; ++i) {
     if (hits.geometry[i] != kNoGeometry) {
-      hit_rays[hit_count++] = static_cast<std::uint32_t>(i);
+      points[point_count++] = static_cast<std::uint32_t>(i);
       continue;
     }
-    const PendingRay& ray = contexts[i];
     // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
-    const Vec3f poison = (ray.origin + ray.direction) * 0.0f;
-    results.radiance[ray.sample] +=
-        (media_matter ? escaping_weight(ray) : ray.weight) * scene.background.along(ray.direction) +
+    const Vec3f direction = rays.direction(i), poison = (rays.origin(i) + direction) * 0.0f;
+    results.radiance[batch.sample[i]] +=
+        (media_matter ? escaping_weight(i) : batch.weight(i)) * scene.background.along(direction) +
         Rgb(poison.x + poison.y + poison.z);
   }
-  prefetch_triangles(shapes);
+  prefetch_triangles(*scene.shapes);
+  find_surfaces(*scene.shapes, rays, hits, wants_texture, shading.surfaces);
+  shading.turn_to_rays(rays);
+}
 
+/// Looks up the materials of the hits, takes what the way to them took, and adds ambient light.
+void SampleTracer::State::collect_points(bool eye) {
+  const ShapeSet& shapes = *scene.shapes;
+  const SampleWindow window = eye ? eye_window : SampleWindow();
   std::size_t count = 0;
-  for (std::size_t h = 0; h < hit_count; ++h) {
-    const std::size_t i = hit_rays[h];
-    const PendingRay& ray = contexts[i];
+  for (const std::uint32_t i : batch_points()) {
     const Hit hit = hits[i];
-    BatchPoint& point = points[count];
     std::uint32_t object, material_index;
     if (kFeatures.instances && instanced && hit.instance != kNoInstance) {
       object = shapes.instances[hit.instance].object;
       material_index = scene.material_at(hit);
-      find_instance_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     } else {
       object = shapes.shape_of(hit.geometry, hit.primitive);
       material_index = scene.own_material(shapes, object, hit);
-      find_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     }
     const Material& material = scene.materials[material_index];
-    complete_shading_point(point.shading, ray.direction, material, window);
-    point.weight = ray.weight;
-    point.allowance = ray.allowance;
-    point.sample = ray.sample;
-    point.level = ray.level;
+    shading.set_material(i, material);
+    Rgb ambient = material.ambient.even;
+    if ((kFeatures.patterns || kFeatures.bumps) && material.is_varied) {
+      ShadingPoint point = shading_point(i);
+      vary(point, window);
+      shading.set_varied(i, point);
+    }
+    if (material.ambient_as_diffuse)
+      ambient = shading.diffuse(i);
+    else if (kFeatures.patterns && material.ambient.varies())
+      ambient = varied_ambient(shading_point(i), window);
     if ((kFeatures.media || kFeatures.absorption || kFeatures.rough_surfaces) && material.takes_on_the_way &&
-        passes(count, ray, hit))
+        passes(i, hit))
       continue;
-    if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && ray.level > 1)
-      point.weight *=
-          segment_attenuation(static_cast<float>(settings.distance_attenuation), point.shading.surface.distance);
-    results.radiance[ray.sample] += point.weight * scene.ambient * ambient_of(point.shading, window);
-    if (kFeatures.first_hit_channels && records.first_hits && ray.level == 1)
-      record_first_hit(point, object, material_index);
-    ++count;
+    if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && batch.level[i] > 1)
+      batch.set_weight(i, batch.weight(i) * segment_attenuation(static_cast<float>(settings.distance_attenuation),
+                                                                shading.surfaces.distance[i]));
+    results.radiance[batch.sample[i]] += batch.weight(i) * scene.ambient * ambient;
+    if (kFeatures.first_hit_channels && records.first_hits && batch.level[i] == 1)
+      record_first_hit(i, object, material_index);
+    points[count++] = i;
   }
   point_count = count;
 }
@@ -329,35 +313,34 @@ void SampleTracer::State::collect_hits(bool eye) {
   if (scene.camera.is_perspective()) {
     if (!knows_eye_solids) eye_solids = solids_around(scene, scene.camera.position(), scene.camera.forward());
     knows_eye_solids = true;
-    const MediaId set = media->set_of(eye_solids);
-    for (std::size_t i = 0; i < positions.size(); ++i) eye_rays[i].media = set;
+    std::fill_n(batch.media, positions.size(), media->set_of(eye_solids));
   } else {
     for (std::size_t i = 0; i < positions.size(); ++i)
-      eye_rays[i].media = media->set_of(solids_around(scene, eye_rays[i].origin, eye_rays[i].direction));
+      batch.media[i] = media->set_of(solids_around(scene, batch.origin(i), batch.direction(i)));
   }
 }
 
-/// Takes what was absorbed on the way to a point, notes its path, and says what its surface separates. True: nothing;
-/// the ray goes on behind it, at its level.
-[[gnu::noinline]] bool SampleTracer::State::passes(std::size_t p, const PendingRay& ray, const Hit& hit) {
-  BatchPoint& point = points[p];
-  const SurfacePoint& surface = point.shading.surface;
-  const TreePath path = tracks_paths() ? context_paths[&ray - contexts] : TreePath();
-  if (tracks_paths()) point_paths[p] = path;
+/// Takes what was absorbed on the way to a point and says what its surface separates. True: nothing; the ray goes on
+/// behind it, at its level.
+[[gnu::noinline]] bool SampleTracer::State::passes(std::size_t i, const Hit& hit) {
+  const bool leaving = shading.leaving[i] != 0;
+  const float distance = shading.surfaces.distance[i];
   if (!tracks_media()) {
-    if (point.shading.material->absorbs && point.shading.leaving)
-      point.weight *= transmitted_share(point.shading.material->absorption, surface.distance);
+    const Material& material = *shading.materials[i];
+    if (material.absorbs && leaving)
+      batch.set_weight(i, batch.weight(i) * transmitted_share(material.absorption, distance));
     return false;
   }
-  MediaBoundary& boundary = boundaries[p];
-  boundary = media->boundary(ray.media, solid_at(scene, hit), point.shading.leaving);
-  point.weight *= media->transmitted(boundary.before, surface.distance);
+  MediaBoundary& boundary = boundaries[i];
+  boundary = media->boundary(batch.media[i], solid_at(scene, hit), leaving);
+  batch.set_weight(i, batch.weight(i) * media->transmitted(boundary.before, distance));
   if (!boundary.passes) return false;
-  if (records.first_hits && ray.level == 1) results.first_hits[ray.sample].distance += surface.distance;
-  NewRays& out = path.is_split ? split_rays : new_rays;
-  if (tracks_paths()) out.passed_paths.push_back(path);
-  out.passed.push_back({offset_origin(surface, -surface.geometric_normal), ray.allowance, ray.direction, ray.sample,
-                        boundary.after, point.weight, ray.level});
+  if (records.first_hits && batch.level[i] == 1) results.first_hits[batch.sample[i]].distance += distance;
+  const TreePath own = tracks_paths() ? path(i) : TreePath();
+  NewRays& out = own.is_split ? split_rays : new_rays;
+  if (tracks_paths()) out.passed_paths.push_back(own);
+  out.passed.push(child_origin(i, true), rays.direction(i),
+                  {batch.weight(i), batch.allowance[i], batch.level[i], batch.sample[i], boundary.after});
   return true;
 }
 
@@ -366,8 +349,7 @@ void SampleTracer::State::prefetch_triangles(const ShapeSet& shapes) const {
   const bool any_instances = kFeatures.instances && instanced;
   if (shapes.meshes.empty() && !any_instances) return;
   const auto for_each_triangle = [&](auto&& function) {
-    for (std::size_t h = 0; h < hit_count; ++h) {
-      const std::size_t i = hit_rays[h];
+    for (const std::uint32_t i : batch_points()) {
       if (hits.geometry[i] < kFirstMeshGeometry) continue;
       const BoundedShapes& list = any_instances && hits.instance[i] != kNoInstance
                                       ? shapes.groups[shapes.instances[hits.instance[i]].group]
@@ -386,28 +368,29 @@ void SampleTracer::State::prefetch_triangles(const ShapeSet& shapes) const {
 }
 
 void SampleTracer::State::add_lights() {
+  if (point_count == 0) return;
   for (const Light& light : scene.lights) {
     std::size_t count = 0;
-    for (const BatchPoint& point : batch_points()) {
-      const Material& material = *point.shading.material;
-      if (!material.has_diffuse && !material.has_highlight) continue;
-      const LocalLight local = local_light(point.shading, light, settings.highlights);
+    shading.meet(rays, light, settings.highlights);
+    for (const std::uint32_t i : batch_points()) {
+      const Material& material = *shading.materials[i];
+      if (!shading.is_before_light(i) || (!material.has_diffuse && !material.has_highlight)) continue;
+      const LocalLight local = local_light(shading.meeting(i), material, shading.diffuse(i), light);
       if (!local.lit) continue;
       Rgb shadowed = local.diffuse;
       if (settings.shadowed_highlights)
         shadowed += local.highlight;
       else
-        results.radiance[point.sample] += point.weight * local.highlight;
+        results.radiance[batch.sample[i]] += batch.weight(i) * local.highlight;
       if (is_black(shadowed)) continue;
       if (!settings.shadows) {
-        results.radiance[point.sample] += point.weight * shadowed;
+        results.radiance[batch.sample[i]] += batch.weight(i) * shadowed;
         continue;
       }
-      const Vec3f origin = offset_origin(point.shading.surface, point.shading.surface.geometric_normal);
-      shadow_rays.set(count, origin, local.direction, local.distance);
-      shadow_samples[count] = point.sample;
-      shadow_light[count] = point.weight * shadowed;
-      if (tracks_media()) shadow_media[count] = boundaries[static_cast<std::size_t>(&point - points.data())].before;
+      shadow_rays.set(count, child_origin(i, false), local.direction, local.distance);
+      shadow_samples[count] = batch.sample[i];
+      shadow_light[count] = batch.weight(i) * shadowed;
+      if (tracks_media()) shadow_media[count] = boundaries[i].before;
       ++count;
     }
     if (count == 0) continue;
@@ -449,55 +432,58 @@ void SampleTracer::State::add_lights() {
 
 void SampleTracer::State::spawn() {
   std::uint64_t branches_at_limit = 0;
-  for (const BatchPoint& point : batch_points()) {
-    const Material& material = *point.shading.material;
+  bool has_branched = false;
+  for (const std::uint32_t i : batch_points()) {
+    const Material& material = *shading.materials[i];
     if (!material.has_reflection && !material.has_transmission) continue;
     if ((kFeatures.special_optics || kFeatures.media || kFeatures.rough_surfaces) && material.special_optics) {
-      branches_at_limit += spawn_specially(point);
+      branches_at_limit += spawn_specially(i);
     } else {
-      float allowance = point.allowance;
-      branches_at_limit +=
-          spawn_children(point, plain_branches(point.shading), allowance, kNoMedia, kNoMedia, new_rays);
+      if (!has_branched) shading.branch(rays);
+      has_branched = true;
+      float share = batch.allowance[i];
+      branches_at_limit += spawn_children(i, shading.branches(i), share, kNoMedia, kNoMedia, new_rays);
     }
   }
   statistics.branches_at_depth_limit += branches_at_limit;
 }
 
 /// Out of the way of what most scenes are made of.
-[[gnu::noinline]] unsigned SampleTracer::State::spawn_specially(const BatchPoint& point) {
-  float allowance = point.allowance;
+[[gnu::noinline]] unsigned SampleTracer::State::spawn_specially(std::size_t i) {
+  const ShadingPoint point = shading_point(i);
+  float share = batch.allowance[i];
   if (tracks_media()) {
-    const MediaBoundary& boundary = boundaries[static_cast<std::size_t>(&point - points.data())];
-    if (tracks_paths()) return spawn_on_path(point, boundary.relative_index, boundary.before, boundary.after);
-    return spawn_children(point, branches_between(point.shading, boundary.relative_index), allowance, boundary.before,
-                          boundary.after, new_rays);
+    const MediaBoundary& boundary = boundaries[i];
+    if (tracks_paths()) return spawn_on_path(i, point, boundary.relative_index, boundary.before, boundary.after);
+    return spawn_children(i, branches_between(point, boundary.relative_index), share, boundary.before, boundary.after,
+                          new_rays);
   }
-  if (tracks_paths()) return spawn_on_path(point, plain_relative_index(point.shading), kNoMedia, kNoMedia);
-  return spawn_children(point, branches(point.shading), allowance, kNoMedia, kNoMedia, new_rays);
+  if (tracks_paths()) return spawn_on_path(i, point, plain_relative_index(point), kNoMedia, kNoMedia);
+  return spawn_children(i, branches(point), share, kNoMedia, kNoMedia, new_rays);
 }
 
 /// In a scene with rough surfaces. The first rough point on a way down the tree is met by rough_samples facets, each of
 /// which has an equal part of the ray's weight and of its allowance, and what one leaves of its part passes to the
 /// others; so what is cut below the ray stays within its allowance. Later ones are met by one facet.
-unsigned SampleTracer::State::spawn_on_path(const BatchPoint& point, float relative_index, MediaId before,
-                                            MediaId after) {
-  const TreePath path = point_paths[static_cast<std::size_t>(&point - points.data())];
-  const bool rough = point.shading.material->rough, splits = rough && !path.is_split;
+unsigned SampleTracer::State::spawn_on_path(std::size_t i, const ShadingPoint& point, float relative_index,
+                                            MediaId before, MediaId after) {
+  const TreePath path = this->path(i);
+  const bool rough = point.material->rough, splits = rough && !path.is_split;
   const std::uint32_t samples = static_cast<std::uint32_t>(settings.rough_samples), count = splits ? samples : 1;
   const float share = 1 / static_cast<float>(count);
   NewRays& out = rough || path.is_split ? split_rays : new_rays;
-  float allowance = point.allowance;
+  float rest = batch.allowance[i];
   unsigned at_limit = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t index = splits ? i : path.index;
-    Branches children = rough ? rough_branches(point.shading, relative_index, path.key, index, samples)
-                              : branches_between(point.shading, relative_index);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t index = splits ? k : path.index;
+    Branches children = rough ? rough_branches(point, relative_index, path.key, index, samples)
+                              : branches_between(point, relative_index);
     children.reflected_weight *= share;
     children.refracted_weight *= share;
-    float part = allowance / static_cast<float>(count - i);
-    allowance -= part;
-    at_limit += spawn_children(point, children, part, before, after, out);
-    allowance += part;
+    float part = rest / static_cast<float>(count - k);
+    rest -= part;
+    at_limit += spawn_children(i, children, part, before, after, out);
+    rest += part;
     TreePath own = path;
     own.index = static_cast<std::uint16_t>(index);
     own.is_split |= rough;
@@ -507,38 +493,37 @@ unsigned SampleTracer::State::spawn_on_path(const BatchPoint& point, float relat
   return at_limit;
 }
 
-/// `allowance`: what may be cut below the two children; what they leave of it is left. `before`, `after`: the media
-/// that the reflected and the refracted ray are in. Returns how many branches the tree's depth ended.
-[[gnu::always_inline]] inline unsigned SampleTracer::State::spawn_children(const BatchPoint& point,
-                                                                           const Branches& children, float& allowance,
-                                                                           MediaId before, MediaId after,
+/// `share`: what may be cut below the two children; what they leave of it is left. `before`, `after`: the media that
+/// the reflected and the refracted ray are in. Returns how many branches the tree's depth ended.
+[[gnu::always_inline]] inline unsigned SampleTracer::State::spawn_children(std::size_t i, const Branches& children,
+                                                                           float& share, MediaId before, MediaId after,
                                                                            NewRays& out) {
-  const Rgb reflected_weight = point.weight * children.reflected_weight;
-  const Rgb refracted_weight = point.weight * children.refracted_weight;
+  const Rgb own_weight = batch.weight(i);
+  const Rgb reflected_weight = own_weight * children.reflected_weight;
+  const Rgb refracted_weight = own_weight * children.refracted_weight;
   const bool reflects = !is_black(reflected_weight), refracts = !is_black(refracted_weight);
-  const int level = static_cast<int>(point.level);
-  if (level >= settings.depth) return unsigned(reflects) + unsigned(refracts);
-  const Rgb below = scene.bound(settings.depth - level - 1);
+  const std::uint32_t own_level = batch.level[i];
+  if (static_cast<int>(own_level) >= settings.depth) return unsigned(reflects) + unsigned(refracts);
+  const Rgb below = scene.bound(settings.depth - static_cast<int>(own_level) - 1);
   const Rgb reflected_bound = reflected_weight * below, refracted_bound = refracted_weight * below;
-  const Shares shares = divided_allowance(allowance, max_channel(reflected_bound), max_channel(refracted_bound));
+  const Shares shares = divided_allowance(share, max_channel(reflected_bound), max_channel(refracted_bound));
   // Unless both are cut, one of them takes all that the other leaves.
-  allowance = shares.cuts_reflected && shares.cuts_refracted
-                  ? std::max(0.0f, allowance - max_channel(reflected_bound) - max_channel(refracted_bound))
-                  : 0.0f;
-  const SurfacePoint& surface = point.shading.surface;
+  share = shares.cuts_reflected && shares.cuts_refracted
+              ? std::max(0.0f, share - max_channel(reflected_bound) - max_channel(refracted_bound))
+              : 0.0f;
   if (reflects) {
     if (shares.cuts_reflected)
-      cut(point.sample, reflected_bound);
+      cut(batch.sample[i], reflected_bound);
     else
-      out.reflected.push_back({offset_origin(surface, surface.geometric_normal), shares.reflected, children.reflected,
-                               point.sample, before, reflected_weight, point.level + 1});
+      out.reflected.push(child_origin(i, false), children.reflected,
+                         {reflected_weight, shares.reflected, own_level + 1, batch.sample[i], before});
   }
   if (refracts) {
     if (shares.cuts_refracted)
-      cut(point.sample, refracted_bound);
+      cut(batch.sample[i], refracted_bound);
     else
-      out.refracted.push_back({offset_origin(surface, -surface.geometric_normal), shares.refracted, children.refracted,
-                               point.sample, after, refracted_weight, point.level + 1});
+      out.refracted.push(child_origin(i, true), children.refracted,
+                         {refracted_weight, shares.refracted, own_level + 1, batch.sample[i], after});
   }
   return 0;
 }
@@ -548,12 +533,11 @@ void SampleTracer::State::cut(std::uint32_t sample, const Rgb& bound) {
   ++statistics.branches_cut;
 }
 
-void SampleTracer::State::record_first_hit(const BatchPoint& point, std::uint32_t object, std::uint32_t material) {
-  const SurfacePoint& surface = point.shading.surface;
+void SampleTracer::State::record_first_hit(std::size_t i, std::uint32_t object, std::uint32_t material) {
+  FirstHit& first = results.first_hits[batch.sample[i]];
   // What the eye ray has passed through is in the distance already.
-  const float distance = results.first_hits[point.sample].distance + surface.distance;
-  results.first_hits[point.sample] = {distance, surface.shading_normal, point.shading.diffuse, object + 1,
-                                      material + 1};
+  first = {first.distance + shading.surfaces.distance[i], shading.surfaces.shading_normal[i], shading.diffuse(i),
+           object + 1, material + 1};
 }
 
 SampleTracer::SampleTracer(const Scene& scene, const SampleRecords& records, const std::atomic<bool>* stop)

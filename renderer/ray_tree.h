@@ -16,12 +16,6 @@
 
 namespace raytree {
 
-/// Rays in flight at once. A queue pops so many of its newest rays and pushes at most twice as many, so it never holds
-/// more than kBatchSize times the tree's depth. A rough bounce pushes 2 N for one, but once on a way down the tree:
-/// such rays lie above all that may still split, and are gone before one of those splits; so they add 2 N kBatchSize
-/// and what grows from the newest kBatchSize of them.
-inline constexpr std::size_t kBatchSize = 1024;
-
 /// What an eye ray hit.
 struct FirstHit {
   float distance = 0;          ///< along the eye ray, scene units
@@ -44,8 +38,11 @@ struct SampleResults {
   std::vector<FirstHit> first_hits;
 };
 
-/// Traces samples of one scene on one thread. What a batch of samples yields depends on the scene, the settings and the
-/// batch's positions, in their order, alone.
+/// Traces samples of one scene on one thread. Its queue pops kBatchSize of the newest rays and pushes at most twice as
+/// many, so it never holds more than kBatchSize times the tree's depth. A rough bounce pushes 2 N for one, but once on
+/// a way down the tree: such rays lie above all that may still split, and are gone before one of those splits; so they
+/// add 2 N kBatchSize and what grows from the newest kBatchSize of them. What a batch of samples yields depends on the
+/// scene, the settings and the batch's positions, in their order, alone.
 class SampleTracer {
  public:
   /// `scene` and `stop` (null: never stopped) must outlive the tracer.

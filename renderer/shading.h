@@ -79,13 +79,45 @@ struct LocalLight {
   bool lit = false;  ///< the light stands on the side that is seen, by both normals, and shines this way
 };
 
-/// k_d (N.L) and W(i) (R.L)^n (Phong 1973, eq. 4.5) or W (N.H)^n (Whitted 1980, eq. 1), times the light's color.
-inline LocalLight local_light(const ShadingPoint& point, const Light& light, HighlightForm form) {
+/// How a light stands to a point: what of local_light() depends on directions alone.
+struct LightMeeting {
+  Vec3f direction;      ///< unit, to the light
+  float distance;       ///< to the light; infinity: directional
+  float cosine;         ///< N.L
+  float highlight;      ///< R.L (Phong 1973, eq. 4.5) or N.H (Whitted 1980, eq. 1)
+  bool is_before_both;  ///< the light stands on the side that is seen, by both normals
+};
+
+/// What highlights are raised to a power of: `direction`, of the ray, and `to_light` unit. Without branches, as what
+/// follows, so that a loop over many points is vectorized.
+template <HighlightForm form>
+[[gnu::always_inline]] inline float highlight_cosine(const Vec3f& normal, const Vec3f& direction, const Vec3f& to_light,
+                                                     float cosine) {
+  if constexpr (form == HighlightForm::reflected) {
+    const Vec3f mirrored = normal * (2 * cosine) - to_light;
+    return -mirrored.dot(direction);
+  } else {
+    const Vec3f halfway = to_light - direction;
+    const float square = halfway.dot(halfway), share = normal.dot(halfway) / std::sqrt(square);
+    return square > 0 ? share : 0.0f;
+  }
+}
+template <HighlightForm form>
+[[gnu::always_inline]] inline LightMeeting light_meeting(const Vec3f& normal, const Vec3f& geometric_normal,
+                                                         const Vec3f& direction, const Vec3f& to_light,
+                                                         float distance) {
+  const float cosine = normal.dot(to_light);
+  return {to_light, distance, cosine, highlight_cosine<form>(normal, direction, to_light, cosine),
+          bool((cosine > 0) & (geometric_normal.dot(to_light) > 0))};
+}
+
+/// k_d (N.L) and W(i) (R.L)^n or W (N.H)^n, times the light's color. `diffuse`: k_d there.
+inline LocalLight local_light(const LightMeeting& meeting, const Material& material, const Rgb& diffuse,
+                              const Light& light) {
   LocalLight result;
-  result.direction = light.direction_from(point.surface.position, result.distance);
-  const Vec3f& normal = point.surface.shading_normal;
-  const float cosine = normal.dot(result.direction);
-  if (!(cosine > 0) || !(point.surface.geometric_normal.dot(result.direction) > 0)) return result;
+  result.direction = meeting.direction;
+  result.distance = meeting.distance;
+  if (!meeting.is_before_both) return result;
   Rgb color = light.color;
   if (kFeatures.uneven_lights && !light.even) {
     const float strength = light.strength(result.direction, result.distance);
@@ -93,25 +125,26 @@ inline LocalLight local_light(const ShadingPoint& point, const Light& light, Hig
     color *= strength;
   }
   result.lit = true;
-  const Material& material = *point.material;
-  result.diffuse = color * point.diffuse * std::min(cosine, 1.0f);
-  if (material.has_highlight) {
-    float base;
-    if (!kFeatures.halfway_highlights || form == HighlightForm::reflected) {
-      const Vec3f mirrored = normal * (2 * cosine) - result.direction;
-      base = -mirrored.dot(point.direction);
-    } else {
-      const Vec3f halfway = result.direction - point.direction;
-      const float square = halfway.dot(halfway);
-      base = square > 0 ? normal.dot(halfway) / std::sqrt(square) : 0.0f;
-    }
-    if (base > 0) {
-      const Rgb weight = kFeatures.tabled_highlights && material.tabled_highlight ? material.highlight_table.at(cosine)
-                                                                                  : material.highlight;
-      result.highlight = color * weight * std::pow(std::min(base, 1.0f), material.exponent);
-    }
+  result.diffuse = color * diffuse * std::min(meeting.cosine, 1.0f);
+  if (material.has_highlight && meeting.highlight > 0) {
+    const Rgb weight = kFeatures.tabled_highlights && material.tabled_highlight
+                           ? material.highlight_table.at(meeting.cosine)
+                           : material.highlight;
+    result.highlight = color * weight * std::pow(std::min(meeting.highlight, 1.0f), material.exponent);
   }
   return result;
+}
+inline LocalLight local_light(const ShadingPoint& point, const Light& light, HighlightForm form) {
+  float distance;
+  const Vec3f to_light = light.direction_from(point.surface.position, distance);
+  const SurfacePoint& surface = point.surface;
+  const LightMeeting meeting =
+      !kFeatures.halfway_highlights || form == HighlightForm::reflected
+          ? light_meeting<HighlightForm::reflected>(surface.shading_normal, surface.geometric_normal, point.direction,
+                                                    to_light, distance)
+          : light_meeting<HighlightForm::halfway>(surface.shading_normal, surface.geometric_normal, point.direction,
+                                                  to_light, distance);
+  return local_light(meeting, *point.material, point.diffuse, light);
 }
 
 /// Weights and directions of the two children of a hit. A weight of zero: no such child.
@@ -125,13 +158,42 @@ struct Incidence {
   Vec3f normal;
   float cosine;
 };
+/// An interpolated normal may lean away from the viewer near a silhouette: there the facet's own serves.
+[[gnu::always_inline]] inline Incidence incidence(const Vec3f& direction, const Vec3f& shading, const Vec3f& facet) {
+  const float cosine = -direction.dot(shading);
+  const bool faces = cosine > 0;
+  return {{faces ? shading.x : facet.x, faces ? shading.y : facet.y, faces ? shading.z : facet.z},
+          faces ? cosine : -direction.dot(facet)};
+}
 inline Incidence incidence(const ShadingPoint& point) {
-  const Vec3f& shading = point.surface.shading_normal;
-  const float cosine = -point.direction.dot(shading);
-  if (cosine > 0) return {shading, cosine};
-  // An interpolated normal may lean away from the viewer near a silhouette: there the facet's own serves.
-  const Vec3f& facet = point.surface.geometric_normal;
-  return {facet, -point.direction.dot(facet)};
+  return incidence(point.direction, point.surface.shading_normal, point.surface.geometric_normal);
+}
+
+/// R, kept on the side that the ray comes from.
+[[gnu::always_inline]] inline Vec3f reflected_ray(const Vec3f& direction, const Incidence& incidence,
+                                                  const Vec3f& side) {
+  return kept_on_side(reflected_direction(direction, incidence.normal), side);
+}
+
+/// P, kept on the other side, and the share that does not go that way.
+struct Refraction {
+  Vec3f direction{0, 0, 0};  ///< unit, where there is one
+  float reflectance = 1;     ///< F
+  bool is_possible = false;  ///< false: total internal reflection
+};
+
+/// `relative_index`: of the side that P enters over the side that the ray comes from; `eta` is its inverse. Without
+/// branches, so that a loop over many points is vectorized.
+[[gnu::always_inline]] inline Refraction refraction(const Vec3f& direction, const Incidence& incidence,
+                                                    const Vec3f& side, float relative_index, float eta) {
+  const float cosine = std::min(incidence.cosine, 1.0f), square = refracted_cosine_square(cosine, eta);
+  Refraction result;
+  result.is_possible = square > 0;
+  const float refracted_cos = std::sqrt(square > 0 ? square : 0.0f);
+  const float reflectance = fresnel_reflectance(cosine, refracted_cos, relative_index);
+  result.reflectance = result.is_possible ? reflectance : 1.0f;
+  result.direction = kept_on_side(refracted_direction(direction, incidence.normal, eta, cosine, refracted_cos), -side);
+  return result;
 }
 
 /// Thin sheets and conductors, and any material where media are not told apart. `index`: a thin sheet's over that of
@@ -139,30 +201,30 @@ inline Incidence incidence(const ShadingPoint& point) {
 Branches special_branches(const ShadingPoint& point, float index);
 
 /// R and P with k_s and k_t, or with k_s F and k_t (1 - F). At total internal reflection T = 0; F = 1.
-/// `relative_index`: of the side that P enters over the side that the ray comes from; `eta` is its inverse.
+[[gnu::always_inline]] inline Branches weighted_branches(const Material& material, const Vec3f& reflected,
+                                                         const Refraction& refraction) {
+  Branches result;
+  const bool fresnel = kFeatures.fresnel && material.fresnel;
+  if (material.has_transmission && refraction.is_possible) {
+    result.refracted = refraction.direction;
+    result.refracted_weight = fresnel ? material.transmission * (1 - refraction.reflectance) : material.transmission;
+  }
+  if (material.has_reflection) {
+    result.reflected = reflected;
+    result.reflected_weight = fresnel ? material.reflection * refraction.reflectance : material.reflection;
+  }
+  return result;
+}
 [[gnu::always_inline]] inline Branches dielectric_branches(const ShadingPoint& point, float relative_index, float eta) {
   const Material& material = *point.material;
   const Vec3f& side = point.surface.geometric_normal;
-  auto [normal, cosine] = incidence(point);
-  Branches result;
-  float reflectance = 1;
-  const bool fresnel = kFeatures.fresnel && material.fresnel;
-  if (material.has_transmission || fresnel) {
-    cosine = std::min(cosine, 1.0f);
-    if (const auto refracted_cos = refracted_cosine(cosine, eta)) {
-      if (fresnel) reflectance = fresnel_reflectance(cosine, *refracted_cos, relative_index);
-      if (material.has_transmission) {
-        const Vec3f refracted = refracted_direction(point.direction, normal, eta, cosine, *refracted_cos);
-        result.refracted = kept_on_side(refracted, -side);
-        result.refracted_weight = fresnel ? material.transmission * (1 - reflectance) : material.transmission;
-      }
-    }
-  }
-  if (material.has_reflection) {
-    result.reflected = kept_on_side(reflected_direction(point.direction, normal), side);
-    result.reflected_weight = fresnel ? material.reflection * reflectance : material.reflection;
-  }
-  return result;
+  const Incidence about = incidence(point);
+  Vec3f reflected(0, 0, 0);
+  Refraction through;
+  if (material.has_transmission || (kFeatures.fresnel && material.fresnel))
+    through = refraction(point.direction, about, side, relative_index, eta);
+  if (material.has_reflection) reflected = reflected_ray(point.direction, about, side);
+  return weighted_branches(material, reflected, through);
 }
 
 /// The same where the surface separates its material's inside from empty space.

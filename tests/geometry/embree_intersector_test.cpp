@@ -263,6 +263,68 @@ TEST(EmbreeIntersector, CoherentAndIncoherentCallsAgreeInHitAndMiss) {
   }
 }
 
+/// Packets that miss all bounds are not traced: none of them may have hit. Rays along, just inside and just outside the
+/// borders of a flat mesh and of a box, at several sizes and distances, eight alike so that whole packets are left out.
+TEST(EmbreeIntersector, LeavesOutNoPacketThatWouldHit) {
+  Random random(21);
+  int hits = 0, misses = 0;
+  for (const double size : {1e-3, 1.0, 1e3})
+    for (const double shift : {0.0, 10.0, 1e4})
+      for (const bool flat : {true, false}) {
+        const Vec3d center = random.direction() * (shift * size);
+        ShapeSet shapes;
+        const auto corner = [&](double x, double y, double z) { return Vec3f(center + Vec3d(x, y, z) * size); };
+        add_triangle(shapes, corner(-1, -1, 0), corner(1, -1, 0), corner(1, 1, 0));
+        add_triangle(shapes, corner(-1, -1, 0), corner(1, 1, 0), corner(-1, 1, 0));
+        if (!flat) add_triangle(shapes, corner(-1, -1, -1), corner(1, -1, -1), corner(0, 0, 1));
+        const EmbreeIntersector intersector(shapes, {});
+        RayBatch rays(1024);
+        HitBatch found(1024);
+        std::vector<std::uint8_t> blocked(1024 + kBatchPadding);
+        for (int round = 0; round < 4; ++round) {
+          rays.size = 0;
+          while (rays.size < 1024) {
+            // Toward a place at the border or anywhere about, from near and far.
+            const double off = 1 + random.uniform(-4, 4) * (shift + 1) * 0x1p-23;
+            const double along = random.uniform(-1.5, 1.5);
+            const Vec3d aim = random.uniform(0, 1) < 0.5 ? Vec3d(off, along, 0) : Vec3d(along, -off, 0);
+            const Vec3d from = aim + random.direction() * random.uniform(0.01, 100);
+            const Vec3f origin(center + from * size);
+            const Vec3f direction(unit(center + aim * size - Vec3d(origin)));
+            const float end =
+                random.uniform(0, 1) < 0.3 ? static_cast<float>(random.uniform(0, 100) * size) : kInfinity;
+            for (int i = 0; i < 8; ++i) rays.push(origin, direction, end);
+          }
+          intersector.intersect(rays, Coherence::incoherent, found);
+          intersector.occluded(rays, Coherence::incoherent, blocked.data());
+          for (std::size_t i = 0; i < rays.size; ++i) {
+            const Hit one = intersector.intersect_one(rays.origin(i), rays.direction(i), rays.max_distance[i]);
+            ASSERT_EQ(found.geometry[i], one.geometry);
+            ASSERT_EQ(blocked[i] != 0, one.geometry != kNoGeometry);
+            (one.geometry == kNoGeometry ? misses : hits) += 1;
+          }
+        }
+      }
+  EXPECT_GT(hits, 2000);
+  EXPECT_GT(misses, 2000);
+}
+
+TEST(EmbreeIntersector, LeavesOutEmptyScenes) {
+  Random random(22);
+  const ShapeSet shapes;
+  const EmbreeIntersector intersector(shapes, {});
+  RayBatch rays(64);
+  HitBatch found(64);
+  std::vector<std::uint8_t> blocked(64 + kBatchPadding, 1);
+  fill_with_random_rays(rays, 64, random);
+  intersector.intersect(rays, Coherence::coherent, found);
+  intersector.occluded(rays, Coherence::coherent, blocked.data());
+  for (std::size_t i = 0; i < 64; ++i) {
+    EXPECT_EQ(found.geometry[i], kNoGeometry);
+    EXPECT_EQ(blocked[i], 0);
+  }
+}
+
 TEST(EmbreeIntersector, BatchesOfEverySizeGiveEachRayItsOwnHit) {
   Random random(5);
   const ShapeSet shapes = random_shapes(random, 100, true);
