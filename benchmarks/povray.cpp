@@ -176,7 +176,7 @@ Figure adaptive_figure(const MeasureContext& context, Scene& scene, const std::s
   RenderSettings best = settings;
   double our_error = 0, least = std::numeric_limits<double>::infinity();
   for (const int levels : {1, 2, 3, 4, 5})
-    for (const double threshold : {0.4, 0.2, 0.1, 0.05, 0.025}) {
+    for (const double threshold : {0.4, 0.28, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025}) {
       settings.adaptive.levels = levels;
       settings.adaptive.threshold = threshold;
       const Traced ours = traced(scene, settings);
@@ -266,8 +266,8 @@ Figure distance_figure(const MeasureContext& context, Scene& scene, const std::s
   context.progress("povray: distances, " + scene.description.name);
   RenderSettings settings = scene.description.render;
   settings.antialias = {Antialiasing::Method::none, 1};
-  // Three samples to a pixel and axis, the middle one at its center: what lies between pixels is an edge too.
-  constexpr int kFine = 3;
+  // Five samples to a pixel and axis, the middle one at its center: what lies between pixels is an edge too.
+  constexpr int kFine = 5;
   const ImageDescription image = scene.description.image;
   scene.description.image = {kFine * image.width, kFine * image.height};
   scene.camera =
@@ -279,7 +279,8 @@ Figure distance_figure(const MeasureContext& context, Scene& scene, const std::s
   const std::uint32_t* const object = film.id_plane(ChannelGroup::object_id);
   const int width = image.width, height = image.height, fine_width = film.window().width;
   const auto at_center = [&](int x, int y) {
-    return static_cast<std::size_t>(kFine * y + 1) * fine_width + static_cast<std::size_t>(kFine * x + 1);
+    return static_cast<std::size_t>(kFine * y + kFine / 2) * fine_width +
+           static_cast<std::size_t>(kFine * x + kFine / 2);
   };
   float farthest = 0;
   for (int y = 0; y < height; ++y)
