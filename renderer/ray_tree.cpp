@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "renderer/facet_shading.h"
 #include "renderer/features.h"
 #include "renderer/media.h"
 #include "renderer/rough_surface.h"
@@ -101,6 +102,7 @@ struct SampleTracer::State {
     }
     for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
     instanced = !scene.shapes->instances.empty();
+    if (shades_facets()) facets.emplace(scene);
     if (follows_shadows()) shadow_paths.emplace(scene, kBatchSize);
     if (tracks_media()) {
       media.emplace(scene);
@@ -118,6 +120,7 @@ struct SampleTracer::State {
   bool tracks_media() const { return kFeatures.media && scene.tracks_media; }
   bool follows_shadows() const { return kFeatures.transparent_shadows && scene.transparent_shadows; }
   bool tracks_paths() const { return kFeatures.rough_surfaces && scene.rough_surfaces; }
+  bool shades_facets() const { return kFeatures.facet_shading && scene.shades_facets; }
   bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
   void trace_batch(Coherence coherence, bool eye);
   void collect_hits(bool eye);
@@ -170,6 +173,9 @@ struct SampleTracer::State {
   bool wants_texture = false;
   SampleWindow eye_window;  ///< of the chunk's eye rays
   bool instanced = false;   ///< the scene has instances
+
+  /// Where some facets are shaded in a way of their own.
+  std::optional<FacetShading> facets;
 
   /// Where something transmits and shadows show it.
   std::optional<ShadowPaths> shadow_paths;
@@ -287,6 +293,7 @@ void SampleTracer::State::collect_hits(bool eye) {
   }
   prefetch_triangles(shapes);
 
+  if (shades_facets()) facets->begin_batch();
   std::size_t count = 0;
   for (std::size_t h = 0; h < hit_count; ++h) {
     const std::size_t i = hit_rays[h];
@@ -303,6 +310,7 @@ void SampleTracer::State::collect_hits(bool eye) {
       material_index = scene.own_material(shapes, object, hit);
       find_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     }
+    if (shades_facets()) facets->add(count, hit, ray.direction, ray.level == 1, point.shading.surface);
     const Material& material = scene.materials[material_index];
     complete_shading_point(point.shading, ray.direction, material, window);
     point.weight = ray.weight;
@@ -391,7 +399,9 @@ void SampleTracer::State::add_lights() {
     for (const BatchPoint& point : batch_points()) {
       const Material& material = *point.shading.material;
       if (!material.has_diffuse && !material.has_highlight) continue;
-      const LocalLight local = local_light(point.shading, light, settings.highlights);
+      const std::size_t p = static_cast<std::size_t>(&point - points.data());
+      LocalLight local = shades_facets() ? facets->light(p, point.shading, light, settings.highlights)
+                                         : local_light(point.shading, light, settings.highlights);
       if (!local.lit) continue;
       Rgb shadowed = local.diffuse;
       if (settings.shadowed_highlights)
@@ -403,11 +413,13 @@ void SampleTracer::State::add_lights() {
         results.radiance[point.sample] += point.weight * shadowed;
         continue;
       }
-      const Vec3f origin = offset_origin(point.shading.surface, point.shading.surface.geometric_normal);
+      const Vec3f origin = shades_facets()
+                               ? facets->shadow_origin(p, point.shading, light, local)
+                               : offset_origin(point.shading.surface, point.shading.surface.geometric_normal);
       shadow_rays.set(count, origin, local.direction, local.distance);
       shadow_samples[count] = point.sample;
       shadow_light[count] = point.weight * shadowed;
-      if (tracks_media()) shadow_media[count] = boundaries[static_cast<std::size_t>(&point - points.data())].before;
+      if (tracks_media()) shadow_media[count] = boundaries[p].before;
       ++count;
     }
     if (count == 0) continue;
@@ -448,6 +460,8 @@ void SampleTracer::State::add_lights() {
 }
 
 void SampleTracer::State::spawn() {
+  if (shades_facets())
+    for (std::size_t p = 0; p < point_count; ++p) facets->bend(p, points[p].shading);
   std::uint64_t branches_at_limit = 0;
   for (const BatchPoint& point : batch_points()) {
     const Material& material = *point.shading.material;
