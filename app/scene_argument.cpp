@@ -178,9 +178,6 @@ void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
   command.add_option("--rate", flags.rate, "Cut every edge of a curved surface in N, whatever the view needs")
       ->type_name("N")
       ->group("Scene");
-  command.add_option("--shading", flags.shading, "Shade all facets so: flat, gouraud, phong or limit")
-      ->type_name("METHOD")
-      ->group("Scene");
   if (!tracing) return;
   command
       .add_option("--terminator", flags.terminator,
@@ -221,6 +218,12 @@ void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
                   "Facets that stand for a rough surface where a way down the tree first meets one")
       ->type_name("N")
       ->group("Tracing");
+}
+
+void add_shading_flag(CLI::App& command, SceneFlags& flags) {
+  command.add_option("--shading", flags.shading, "Shade all facets so: flat, gouraud, phong or limit")
+      ->type_name("METHOD")
+      ->group("Scene");
 }
 
 void add_hierarchy_flags(CLI::App& command, SceneFlags& flags) {

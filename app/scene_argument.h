@@ -28,9 +28,12 @@ struct SceneFlags {
   std::string hierarchy, memory;
 };
 
-/// Adds --size, --camera, --set, --tolerance, --rate and --shading; with `tracing` also what else changes the
+/// Adds --size, --camera, --set, --tolerance and --rate; with `tracing` also what else changes the
 /// picture.
 void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing);
+
+/// Adds --shading.
+void add_shading_flag(CLI::App& command, SceneFlags& flags);
 
 /// Adds --hierarchy and --memory, for commands that trace.
 void add_hierarchy_flags(CLI::App& command, SceneFlags& flags);

@@ -105,7 +105,6 @@ std::optional<SheetOptions> parse_sheet_options(const Words& words) {
   if (options.output.empty()) throw usage_error("no output: add -o FILE, for example -o sheet.png");
   if (image_format(options.output) == ImageFormat::exr)
     throw usage_error("-o: a sheet is a display-referred picture: .png, .jpg or .tif");
-  if (!options.scene.shading.empty()) throw usage_error("--shading: a sheet shows all four ways");
   if (options.scene.size.empty()) options.scene.size = kCellSize;
   options.scene.scene = options.scenes.front();
   check_scene_flags(options.scene);
