@@ -130,6 +130,9 @@ struct SampleTracer::State {
   bool passes(std::size_t p, const PendingRay& ray, const Hit& hit);
   Rgb escaping_weight(const PendingRay& ray) const { return ray.weight * media->transmitted(ray.media, kInfinity); }
   void add_lights();
+  template <bool kFacets>
+  void add_lights_to_points();
+  void add_facet(std::size_t p, std::size_t i);
   void follow_shadows(std::size_t count);
   void spawn();
   unsigned spawn_specially(const BatchPoint& point);
@@ -276,7 +279,7 @@ void SampleTracer::State::add_children(RayKind kind, std::vector<PendingRay>& ch
 
 void SampleTracer::State::collect_hits(bool eye) {
   const ShapeSet& shapes = *scene.shapes;
-  const bool media_matter = tracks_media();
+  const bool media_matter = tracks_media(), facets_matter = shades_facets();
   const SampleWindow window = eye ? eye_window : SampleWindow();
   hit_count = 0;
   for (std::size_t i = 0; i < rays.size; ++i) {
@@ -293,7 +296,7 @@ void SampleTracer::State::collect_hits(bool eye) {
   }
   prefetch_triangles(shapes);
 
-  if (shades_facets()) facets->begin_batch();
+  if (facets_matter) facets->begin_batch();
   std::size_t count = 0;
   for (std::size_t h = 0; h < hit_count; ++h) {
     const std::size_t i = hit_rays[h];
@@ -310,7 +313,8 @@ void SampleTracer::State::collect_hits(bool eye) {
       material_index = scene.own_material(shapes, object, hit);
       find_surface(shapes, ray.origin, ray.direction, hit, wants_texture, point.shading.surface);
     }
-    if (shades_facets()) facets->add(count, hit, ray.direction, ray.level == 1, point.shading.surface);
+    if (facets_matter) [[unlikely]]
+      add_facet(count, i);
     const Material& material = scene.materials[material_index];
     complete_shading_point(point.shading, ray.direction, material, window);
     point.weight = ray.weight;
@@ -393,15 +397,29 @@ void SampleTracer::State::prefetch_triangles(const ShapeSet& shapes) const {
   });
 }
 
+/// Point p of the batch, which ray i met, is about to be turned to the ray.
+[[gnu::noinline]] void SampleTracer::State::add_facet(std::size_t p, std::size_t i) {
+  facets->add(p, hits[i], contexts[i].direction, contexts[i].level == 1, points[p].shading.surface);
+}
+
 void SampleTracer::State::add_lights() {
+  if (shades_facets())
+    add_lights_to_points<true>();
+  else
+    add_lights_to_points<false>();
+}
+
+/// kFacets: some facets are shaded in a way of their own.
+template <bool kFacets>
+void SampleTracer::State::add_lights_to_points() {
   for (const Light& light : scene.lights) {
     std::size_t count = 0;
     for (const BatchPoint& point : batch_points()) {
       const Material& material = *point.shading.material;
       if (!material.has_diffuse && !material.has_highlight) continue;
-      const std::size_t p = static_cast<std::size_t>(&point - points.data());
-      LocalLight local = shades_facets() ? facets->light(p, point.shading, light, settings.highlights)
-                                         : local_light(point.shading, light, settings.highlights);
+      const auto p = static_cast<std::size_t>(&point - points.data());
+      LocalLight local = kFacets ? facets->light(p, point.shading, light, settings.highlights)
+                                 : local_light(point.shading, light, settings.highlights);
       if (!local.lit) continue;
       Rgb shadowed = local.diffuse;
       if (settings.shadowed_highlights)
@@ -413,9 +431,8 @@ void SampleTracer::State::add_lights() {
         results.radiance[point.sample] += point.weight * shadowed;
         continue;
       }
-      const Vec3f origin = shades_facets()
-                               ? facets->shadow_origin(p, point.shading, light, local)
-                               : offset_origin(point.shading.surface, point.shading.surface.geometric_normal);
+      const Vec3f origin = kFacets ? facets->shadow_origin(p, point.shading, light, local)
+                                   : offset_origin(point.shading.surface, point.shading.surface.geometric_normal);
       shadow_rays.set(count, origin, local.direction, local.distance);
       shadow_samples[count] = point.sample;
       shadow_light[count] = point.weight * shadowed;
