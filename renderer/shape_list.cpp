@@ -1,8 +1,5 @@
 #include "renderer/shape_list.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -23,6 +20,7 @@
 #include "geometry/vertex_normals.h"
 #include "renderer/camera.h"
 #include "renderer/groups.h"
+#include "renderer/mesh_transform.h"
 #include "renderer/patch_shape.h"
 #include "renderer/scatter.h"
 #include "renderer/scene_fields.h"
@@ -62,54 +60,12 @@ double uniform_scale(const Matrix44d& m, const std::string& kind, const SourceLo
 
 namespace {
 
-constexpr std::size_t kGrain = 65536;
-
-template <class Function>
-void for_each_index(std::size_t count, Function&& function) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) function(i);
-  });
-}
-
-Vec3d transformed_vector(const Vec3d& vector, const Matrix44d& m) {
-  Vec3d result;
-  m.multDirMatrix(vector, result);
-  return result;
-}
-
-/// Normals go by the inverse transpose of the linear part.
-Vec3d transformed_normal(const Vec3d& normal, const Matrix44d& inverse_transpose) {
-  return unit(transformed_vector(normal, inverse_transpose));
-}
-
 /// The unit normal of a plane or disc as its description has it, in the world.
 Vec3d checked_normal(const Vec3d& normal, const Matrix44d& transform, const SourceLocation& where) {
   Vec3d world = transformed_vector(normal, transform.inverse().transposed());
   const double length = world.length();
   require(length > 0 && std::isfinite(length), "a normal needs a direction, and numbers that are finite", where);
   return world / length;
-}
-
-bool mirrors(const Matrix44d& m) { return m.determinant() < 0; }
-
-void transform_mesh(TriangleMesh& mesh, const Matrix44d& m) {
-  if (m == Matrix44d()) return;
-  mesh.origin = transformed_point(mesh.origin, m);
-  for_each_index(mesh.positions.size(),
-                 [&](std::size_t i) { mesh.positions[i] = Vec3f(transformed_vector(Vec3d(mesh.positions[i]), m)); });
-  const Matrix44d inverse_transpose = m.inverse().transposed();
-  for_each_index(mesh.normals.size(), [&](std::size_t i) {
-    mesh.normals[i] = Vec3f(transformed_normal(Vec3d(mesh.normals[i]), inverse_transpose));
-  });
-  if (!mirrors(m)) return;
-  // A mirrored triangle is wound the other way round.
-  const auto reverse = [](Buffer<std::uint32_t>& corners) {
-    for_each_index(corners.size() / 3, [&](std::size_t i) { std::swap(corners[3 * i + 1], corners[3 * i + 2]); });
-  };
-  // Arrays indexed per position are reversed with the corners.
-  reverse(mesh.corners);
-  reverse(mesh.normal_corners);
-  reverse(mesh.texture_corners);
 }
 
 void count_faces(const PolygonMesh& mesh, ShapeSummary& summary) {
@@ -257,8 +213,7 @@ class Assembler {
             {shape.where,
              "subdivision tags not used, the polygons themselves are drawn; the shape's key subdivision "
              "(\"subdivision\": {}) makes a smooth surface of them"});
-      if (method_ != ShadingMethod::flat && !shape.smoothing)
-        apply_normal_source(*mesh, kind, shape.where, warnings_);
+      if (method_ != ShadingMethod::flat && !shape.smoothing) apply_normal_source(*mesh, kind, shape.where, warnings_);
       set_vertex_normals(*mesh, shape, method_, false);
       add_polygons(std::move(*mesh), shape, id, summary);
     }

@@ -259,6 +259,26 @@ TEST(ShadingMethods, ShadowsFallAndMirrorsShowWithEach) {
   }
 }
 
+// Seen from within, normals turn to the viewer, those of the corners too.
+TEST(ShadingMethods, InsidesAreLitByALampWithin) {
+  for (const ShadingMethod method : kMethods)
+    for (const ShadowTerminator terminator : {ShadowTerminator::classic, ShadowTerminator::offset}) {
+      SceneDescription scene = test::headlit_scene(test::faceted_sphere(16, 8, method), 30, 30, 1);
+      scene.cameras[0].projection = CameraDescription::Projection::perspective;
+      scene.cameras[0].position = {0, 0, 0};
+      scene.cameras[0].target = {0.3, 0.2, -1};
+      scene.cameras[0].field_of_view = 60;
+      scene.lights = {test::point_light({0, 0, 0})};
+      scene.render.facets.shadow_terminator = terminator;
+      for (const float value : test::green(scene)) {
+        EXPECT_GT(value, std::cos(kPi / 8)) << enum_name(method);
+        if (method == ShadingMethod::gouraud) {
+          EXPECT_NEAR(value, 1, 1e-5);
+        }
+      }
+    }
+}
+
 // A mirror of facets: flat shows each facet's own plane, gouraud and phong one interpolated normal, limit the true one.
 TEST(ShadingMethods, ReflectionsFollowTheNormalOfTheMethod) {
   const auto picture = [](ShadingMethod method) {
