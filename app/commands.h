@@ -7,6 +7,7 @@ namespace raytree::app {
 
 int render_command(const Words& words);
 int info_command(const Words& words);
+int sheet_command(const Words& words);
 int scenes_command(const Words& words);
 int schema_command(const Words& words);
 int ocio_command(const Words& words);

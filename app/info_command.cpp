@@ -40,6 +40,7 @@ std::optional<InfoOptions> parse_info_options(const Words& words) {
   command.add_flag("--tessellation", options.tessellation,
                    "Measure how far the triangles of curved shapes lie off their limit surfaces");
   add_scene_flags(command, options.scene, false);
+  add_shading_flag(command, options.scene);
   command.add_option("--channels", channels, "Channel groups that the film is reckoned with, or all")
       ->type_name("LIST");
   command.add_option("--threads", threads, "Threads; default: all")->type_name("N");

@@ -27,6 +27,7 @@ struct Command {
 constexpr Command kCommands[] = {
     {"render", "Render a scene to image files", render_command},
     {"info", "Say what is in a scene, and what it will take, without rendering", info_command},
+    {"sheet", "Shade scenes in each of the four ways, side by side", sheet_command},
     {"convert", "Write a mesh to another file, subdivided or tessellated", convert_command},
     {"scenes", "List the built-in scenes", scenes_command},
     {"schema", "Print the JSON Schema of scene files", schema_command},

@@ -50,6 +50,7 @@ void add_flags(CLI::App& command, RenderFlags& flags) {
       ->type_name("FILE.json")
       ->group("Output");
   add_scene_flags(command, flags.scene, true);
+  add_shading_flag(command, flags.scene);
   add_hierarchy_flags(command, flags.scene);
   command.add_option("--crop", flags.crop, "Render this window of the image alone")
       ->type_name("WxH+X+Y")

@@ -110,6 +110,25 @@ Antialiasing parse_antialiasing(const std::string& text) {
       fmt::format("--antialias: \"{}\" is none of: whitted (adaptive), grid:N (N x N samples a pixel), none", text));
 }
 
+/// The value of that name.
+template <class E>
+E parse_name(const char* flag, const std::string& text) {
+  std::vector<std::string> names;
+  for (const auto& entry : EnumTable<E>::entries) {
+    if (entry.name == text) return entry.value;
+    names.emplace_back(entry.name);
+  }
+  throw usage_error(fmt::format("{}: \"{}\" is none of: {}{}", flag, text, joined(names), did_you_mean(text, names)));
+}
+
+void apply_facet_flags(FacetSettings& facets, const SceneFlags& flags) {
+  if (flags.classic) facets = {facets.shading, ShadowTerminator::classic, FacetReflections::classic};
+  if (!flags.shading.empty()) facets.shading = parse_name<ShadingMethod>("--shading", flags.shading);
+  if (!flags.terminator.empty())
+    facets.shadow_terminator = parse_name<ShadowTerminator>("--terminator", flags.terminator);
+  if (!flags.reflections.empty()) facets.reflections = parse_name<FacetReflections>("--reflections", flags.reflections);
+}
+
 SceneDescription read_scene_argument(const SceneFlags& flags, Warnings& warnings) {
   const std::string& name = flags.scene;
   std::error_code code;
@@ -160,6 +179,18 @@ void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
       ->type_name("N")
       ->group("Scene");
   if (!tracing) return;
+  command
+      .add_option("--terminator", flags.terminator,
+                  "Shadow rays of smooth facets: classic, or offset against false shadows where light grazes")
+      ->type_name("METHOD")
+      ->group("Tracing");
+  command
+      .add_option("--reflections", flags.reflections,
+                  "Rays mirrored to below their facet: classic (followed), clamped, or consistent (none arises)")
+      ->type_name("METHOD")
+      ->group("Tracing");
+  command.add_flag("--classic", flags.classic, "No remedies: --terminator classic --reflections classic")
+      ->group("Tracing");
   command.add_option("--depth", flags.depth, "Levels of the ray tree; the eye ray is level 1")
       ->type_name("N")
       ->group("Tracing");
@@ -187,6 +218,12 @@ void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing) {
                   "Facets that stand for a rough surface where a way down the tree first meets one")
       ->type_name("N")
       ->group("Tracing");
+}
+
+void add_shading_flag(CLI::App& command, SceneFlags& flags) {
+  command.add_option("--shading", flags.shading, "Shade all facets so: flat, gouraud, phong or limit")
+      ->type_name("METHOD")
+      ->group("Scene");
 }
 
 void add_hierarchy_flags(CLI::App& command, SceneFlags& flags) {
@@ -224,6 +261,11 @@ void check_scene_flags(const SceneFlags& flags) {
     throw usage_error(fmt::format("--tolerance: {} is not larger than 0", flags.tolerance));
   if (!flags.rate.empty()) parse_integer("--rate", flags.rate, 1, kLargestRate);
   if (!flags.tolerance.empty() && !flags.rate.empty()) throw usage_error("--tolerance and --rate exclude each other");
+  if (!flags.shading.empty()) parse_name<ShadingMethod>("--shading", flags.shading);
+  if (!flags.terminator.empty()) parse_name<ShadowTerminator>("--terminator", flags.terminator);
+  if (!flags.reflections.empty()) parse_name<FacetReflections>("--reflections", flags.reflections);
+  if (flags.classic && !(flags.terminator.empty() && flags.reflections.empty()))
+    throw usage_error("--classic and --terminator or --reflections exclude each other");
   if (!flags.depth.empty()) parse_integer("--depth", flags.depth, 1, std::numeric_limits<int>::max());
   if (!flags.cutoff.empty() && parse_real("--cutoff", flags.cutoff) < 0)
     throw usage_error(fmt::format("--cutoff: {} is negative; 0 cuts nothing", flags.cutoff));
@@ -250,6 +292,7 @@ SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
     scene.render.tessellation.rate = 0;
   }
   if (!flags.rate.empty()) set_value(scene, "--rate", "render.tessellation.rate", flags.rate);
+  apply_facet_flags(scene.render.facets, flags);
   if (!flags.depth.empty()) set_value(scene, "--depth", "render.depth", flags.depth);
   if (!flags.cutoff.empty()) scene.render.cutoff = parse_real("--cutoff", flags.cutoff);
   if (!flags.antialias.empty()) scene.render.antialias = parse_antialiasing(flags.antialias);

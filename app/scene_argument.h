@@ -23,12 +23,17 @@ struct SceneFlags {
   std::vector<std::string> sets;  ///< PATH=VALUE
   std::string depth, cutoff, antialias, threshold, levels, minimum_level, rough_samples;
   std::string tolerance, rate;
+  std::string shading, terminator, reflections;
+  bool classic = false;
   std::string hierarchy, memory;
 };
 
-/// Adds --size, --camera and --set; with `tracing` also --depth, --cutoff, --antialias and what
-/// tunes it.
+/// Adds --size, --camera, --set, --tolerance and --rate; with `tracing` also what else changes the
+/// picture.
 void add_scene_flags(CLI::App& command, SceneFlags& flags, bool tracing);
+
+/// Adds --shading.
+void add_shading_flag(CLI::App& command, SceneFlags& flags);
 
 /// Adds --hierarchy and --memory, for commands that trace.
 void add_hierarchy_flags(CLI::App& command, SceneFlags& flags);

@@ -1,5 +1,7 @@
 #include "geometry/shape_set.h"
 
+#include "geometry/facet_record.h"
+
 namespace raytree {
 
 namespace {
@@ -18,6 +20,7 @@ std::size_t bounded_bytes(const BoundedShapes& shapes) {
     sum += bytes(mesh.positions) + bytes(mesh.corners) + bytes(mesh.normals) + bytes(mesh.normal_corners) +
            bytes(mesh.texture_coordinates) + bytes(mesh.texture_corners) + bytes(mesh.triangle_faces) +
            bytes(entry.triangle_tags);
+    if (entry.facets) sum += entry.facets->memory_bytes();
   }
   return sum;
 }

@@ -6,6 +6,7 @@
 #include <Imath/ImathVec.h>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "geometry/buffer.h"
@@ -49,6 +50,8 @@ struct Plane {
   ShapeId shape = 0;
 };
 
+struct FacetRecord;  // facet_record.h
+
 inline constexpr std::uint32_t kNoTag = 0xffffffffu;
 
 struct MeshEntry {
@@ -57,6 +60,8 @@ struct MeshEntry {
   /// [triangle_count] what whoever filled the set wants to find again at a hit, kNoTag for nothing; empty: no triangle
   /// has a tag. Tracers do not look at it.
   Buffer<std::uint32_t> triangle_tags = {};
+  /// What shading asks for beside the triangles; null: nothing.
+  std::shared_ptr<const FacetRecord> facets = {};
 };
 
 /// What lies within bounds.

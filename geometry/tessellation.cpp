@@ -45,7 +45,8 @@ void lower(std::uint32_t& value, std::uint32_t candidate) {
 
 class Tessellator {
  public:
-  Tessellator(const ParametricSurface& surface, const TessellationRates& rates) : surface_(surface), rates_(rates) {
+  Tessellator(const ParametricSurface& surface, const TessellationRates& rates, FacetParameters* parameters)
+      : surface_(surface), rates_(rates), facet_parameters_(parameters) {
     check_rates();
     number_sides();
     find_owners();
@@ -83,6 +84,7 @@ class Tessellator {
 
   const ParametricSurface& surface_;
   const TessellationRates& rates_;
+  FacetParameters* facet_parameters_;  ///< null: not wanted
   Buffer<FacePlan> faces_;
   std::uint32_t side_count_ = 0;
   Buffer<std::uint32_t> edge_owner_, vertex_owner_;  ///< number of a side; kNone: no face is there
@@ -221,6 +223,10 @@ TriangleMesh Tessellator::make() {
   mesh_.corners.resize(3 * triangles_);
   mesh_.triangle_faces.resize(triangles_);
   if (normals_ > 0) mesh_.normal_corners.resize(3 * triangles_);
+  if (facet_parameters_ != nullptr) {
+    facet_parameters_->faces.resize(triangles_);
+    facet_parameters_->corners.resize(3 * triangles_);
+  }
   if (surface_.has_texture()) {
     mesh_.texture_coordinates.resize(points_ + textures_);
     if (textures_ > 0) mesh_.texture_corners.resize(3 * triangles_);
@@ -377,6 +383,11 @@ void Tessellator::write_facets(std::size_t face, const FacetPattern& pattern, co
   write(mesh_.texture_corners, scratch.texture);
   std::fill_n(mesh_.triangle_faces.begin() + static_cast<std::ptrdiff_t>(plan.first_triangle), facets.size() / 3,
               surface_.source_face(face));
+  if (facet_parameters_ == nullptr) return;
+  std::fill_n(facet_parameters_->faces.begin() + static_cast<std::ptrdiff_t>(plan.first_triangle), facets.size() / 3,
+              static_cast<std::uint32_t>(face));
+  Vec2f* out = facet_parameters_->corners.data() + 3 * plan.first_triangle;
+  for (const std::uint32_t point : facets) *out++ = pattern.parameters[point];
 }
 
 }  // namespace
@@ -419,8 +430,8 @@ TessellationRates uniform_rates(const ParametricSurface& surface, int rate) {
   return rates;
 }
 
-TriangleMesh tessellate(const ParametricSurface& surface, const TessellationRates& rates) {
-  return Tessellator(surface, rates).make();
+TriangleMesh tessellate(const ParametricSurface& surface, const TessellationRates& rates, FacetParameters* parameters) {
+  return Tessellator(surface, rates, parameters).make();
 }
 
 TriangleMesh tessellate_uniformly(const ParametricSurface& surface, int rate) {

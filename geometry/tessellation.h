@@ -10,6 +10,7 @@
 
 #include "geometry/buffer.h"
 #include "geometry/facet_pattern.h"
+#include "geometry/facet_record.h"
 #include "geometry/parametric_surface.h"
 #include "geometry/triangle_mesh.h"
 
@@ -40,7 +41,10 @@ bool has_no_area(const std::uint32_t* facet, std::span<const std::uint64_t> poin
 /// on the task arena's threads; the result does not depend on their number. triangle_faces holds source_face(). Throws
 /// Error (bad_input) when the points or triangles are more than 32 bits can count, when a rate is out of range, or when
 /// the surface is not finite somewhere.
-TriangleMesh tessellate(const ParametricSurface& surface, const TessellationRates& rates);
+///
+/// `parameters`, where given, gets each triangle's place on the surface.
+TriangleMesh tessellate(const ParametricSurface& surface, const TessellationRates& rates,
+                        FacetParameters* parameters = nullptr);
 
 /// The same with every edge and inside in `rate` segments.
 TriangleMesh tessellate_uniformly(const ParametricSurface& surface, int rate);

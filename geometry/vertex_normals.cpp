@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -57,30 +58,97 @@ void for_each_block(std::size_t count, const Function& function) {
                     [&](std::size_t block) { function(block, block * kBlock, std::min(count, (block + 1) * kBlock)); });
 }
 
+/// Phong 1973, eq. 4.1: the sum of the cross products of successive edges.
+Vec3d edge_sum(const PolygonMesh& mesh, std::size_t begin, std::size_t end) {
+  const std::size_t count = end - begin;
+  const auto point = [&](std::size_t i) { return Vec3d(mesh.positions[mesh.corners[begin + i % count]]); };
+  Vec3d sum(0, 0, 0);
+  for (std::size_t i = 0; i < count; ++i) sum += (point(i + 1) - point(i)).cross(point(i + 2) - point(i + 1));
+  return sum;
+}
+
+/// What is known of a mesh before its vertices are looked at.
+struct MeshFaces {
+  MeshFaces(const PolygonMesh& mesh_, const NormalRules& rules);
+
+  /// The vertex that stands for all of its position, where pieces share normals.
+  std::uint32_t vertex(std::uint32_t index) const { return welded.empty() ? index : welded[index]; }
+
+  const PolygonMesh& mesh;
+  NormalMethod method;
+  Faces faces;
+  Buffer<Vec3f> normals;         // [face_count], unit
+  Buffer<Vec3d> shares;          // [face_count] what every corner of a face gets of it, where no corner differs
+  Buffer<std::uint32_t> welded;  // [vertex_count] lowest index of the position; empty: each vertex for itself
+};
+
+Buffer<std::uint32_t> welded_vertices(const Buffer<Vec3f>& positions) {
+  Buffer<std::uint32_t> order, welded;
+  order.resize(positions.size());
+  welded.resize(positions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto key = [&](std::uint32_t i) {
+    const Vec3f& p = positions[i];
+    return std::array<float, 3>{p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // -0 equals 0
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const auto ka = key(a), kb = key(b);
+    return ka != kb ? ka < kb : a < b;
+  });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    welded[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? welded[order[i - 1]] : order[i];
+  return welded;
+}
+
+MeshFaces::MeshFaces(const PolygonMesh& mesh_, const NormalRules& rules)
+    : mesh(mesh_), method(rules.method), faces(mesh_) {
+  const bool shared = method == NormalMethod::area || method == NormalMethod::edges;
+  normals.resize(faces.count());
+  if (shared) shares.resize(faces.count());
+  for_each_block(faces.count(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t face = first; face < last; ++face) {
+      const std::size_t begin = faces.begin(face), end = faces.end(face);
+      normals[face] = unit_face_normal(mesh, begin, end);
+      if (!shared) continue;
+      if (method == NormalMethod::area)
+        shares[face] = newell_normal(mesh.positions.data(), mesh.corners.data() + begin, end - begin);
+      else
+        shares[face] = edge_sum(mesh, begin, end) / double(end - begin);
+    }
+  });
+  if (rules.across_pieces) welded = welded_vertices(mesh.positions);
+}
+
 /// The corners at one vertex, and how they fall into groups that share a normal.
 class VertexFan {
  public:
-  VertexFan(const PolygonMesh& mesh, const Faces& faces, const Buffer<Vec3f>& face_normals, double crease_cosine)
-      : mesh_(mesh), faces_(faces), face_normals_(face_normals), crease_cosine_(crease_cosine) {}
+  VertexFan(const MeshFaces& mesh, double crease_cosine) : mesh_(mesh), crease_cosine_(crease_cosine) {}
 
   /// Gathers the corners [begin, end) of one vertex; with_groups: joins those that meet smoothly across an edge.
   void gather(const std::uint32_t* begin, const std::uint32_t* end, bool with_groups) {
     corners_.clear();
     for (const std::uint32_t* c = begin; c != end; ++c) {
-      const std::size_t face = faces_.of_corner(*c);
-      const std::size_t first = faces_.begin(face), last = faces_.end(face);
-      const std::uint32_t before = mesh_.corners[*c == first ? last - 1 : *c - 1];
-      const std::uint32_t after = mesh_.corners[*c + 1 == last ? first : *c + 1];
-      const Vec3f& normal = face_normals_[face];
-      const Vec3d vertex(mesh_.positions[mesh_.corners[*c]]);
-      const Vec3d to_after = Vec3d(mesh_.positions[after]) - vertex,
-                  to_before = Vec3d(mesh_.positions[before]) - vertex;
+      const PolygonMesh& mesh = mesh_.mesh;
+      const std::size_t face = mesh_.faces.of_corner(*c);
+      const std::size_t first = mesh_.faces.begin(face), last = mesh_.faces.end(face);
+      const std::uint32_t before = mesh.corners[*c == first ? last - 1 : *c - 1];
+      const std::uint32_t after = mesh.corners[*c + 1 == last ? first : *c + 1];
+      const Vec3f& normal = mesh_.normals[face];
+      const Vec3d vertex(mesh.positions[mesh.corners[*c]]);
+      const Vec3d to_after = Vec3d(mesh.positions[after]) - vertex, to_before = Vec3d(mesh.positions[before]) - vertex;
       const Vec3d cross = to_after.cross(to_before);
       double angle = std::atan2(cross.length(), to_after.dot(to_before));
       // The inner angle of a reflex corner is beyond pi: its edges turn against the face's normal.
       if (cross.dot(Vec3d(normal)) < 0) angle = 2 * std::numbers::pi - angle;
-      const bool has_area = normal.length2() > 0;
-      corners_.push_back({normal, has_area ? angle : 0.0, before, after, static_cast<std::uint32_t>(corners_.size())});
+      Corner corner;
+      corner.normal = normal;
+      corner.angle = normal.length2() > 0 ? angle : 0.0;
+      corner.share = share(face, cross, corner);
+      corner.size = mesh_.method == NormalMethod::angle ? corner.angle : corner.share.length();
+      corner.before = mesh_.vertex(before);
+      corner.after = mesh_.vertex(after);
+      corner.group = static_cast<std::uint32_t>(corners_.size());
+      corners_.push_back(corner);
     }
     if (with_groups) join();
   }
@@ -95,30 +163,51 @@ class VertexFan {
   static constexpr std::size_t kAll = static_cast<std::size_t>(-1);
   Vec3f normal(std::size_t group) {
     Vec3d sum(0, 0, 0);
-    double widest = -1;
+    double largest = -1;
     Vec3f fallback(0, 0, 0);
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       if (group != kAll && root(i) != group) continue;
-      sum += Vec3d(corners_[i].normal) * corners_[i].angle;
-      if (corners_[i].angle > widest && corners_[i].normal.length2() > 0) {
-        widest = corners_[i].angle;
+      sum += corners_[i].share;
+      if (corners_[i].size > largest && corners_[i].normal.length2() > 0) {
+        largest = corners_[i].size;
         fallback = corners_[i].normal;
       }
     }
-    // Faces that cancel each other (the two sides of a sheet) leave rounding only: 1e-6 of the angles is far above it.
+    // Faces that cancel each other (the two sides of a sheet) leave rounding only: 1e-6 of the shares is far above it.
     const double length = sum.length();
-    if (length > 1e-6 * std::max(widest, 0.0) && length > 0) return Vec3f(sum / length);
+    if (length > 1e-6 * std::max(largest, 0.0) && length > 0) return Vec3f(sum / length);
     if (fallback.length2() > 0) return fallback;
     return Vec3f(0, 0, 1);  // no face with area here: nothing is seen of it
   }
 
  private:
   struct Corner {
-    Vec3f normal;
-    double angle;
+    Vec3f normal;                 // of the face, unit
+    double angle;                 // 0: the face has no area
+    Vec3d share;                  // of the vertex's normal
+    double size;                  // how much it counts
     std::uint32_t before, after;  // the vertices at the ends of its two edges
     std::uint32_t group;          // parent in the union of groups; a root is the group's first corner
   };
+
+  /// `cross`: of the corner's two edges.
+  Vec3d share(std::size_t face, const Vec3d& cross, const Corner& corner) const {
+    if (corner.angle == 0) return {0, 0, 0};
+    switch (mesh_.method) {
+      case NormalMethod::angle:
+        break;
+      case NormalMethod::unit:
+        return Vec3d(corner.normal);
+      case NormalMethod::area:
+      case NormalMethod::edges:
+        return mesh_.shares[face];
+      case NormalMethod::terminating_edges:
+        return cross;
+      case NormalMethod::corners:
+        return cross.length() > 0 ? cross / cross.length() : Vec3d(0, 0, 0);
+    }
+    return Vec3d(corner.normal) * corner.angle;
+  }
 
   bool is_smooth(const Corner& a, const Corner& b) const {
     return Vec3d(a.normal).dot(Vec3d(b.normal)) >= crease_cosine_ && a.normal.length2() > 0 && b.normal.length2() > 0;
@@ -173,9 +262,7 @@ class VertexFan {
   }
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  const PolygonMesh& mesh_;
-  const Faces& faces_;
-  const Buffer<Vec3f>& face_normals_;
+  const MeshFaces& mesh_;
   double crease_cosine_;
   std::vector<Corner> corners_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_;  // other end, corner
@@ -184,47 +271,42 @@ class VertexFan {
 
 }  // namespace
 
-void compute_vertex_normals(PolygonMesh& mesh, double crease_angle) {
+void compute_vertex_normals(PolygonMesh& mesh, const NormalRules& rules) {
   mesh.normals = {};
   mesh.normal_corners = {};
   const std::size_t vertex_count = mesh.positions.size(), corner_count = mesh.corners.size();
-  const Faces faces(mesh);
-  Buffer<Vec3f> face_normals;
-  face_normals.resize(faces.count());
-  for_each_block(faces.count(), [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t face = first; face < last; ++face)
-      face_normals[face] = unit_face_normal(mesh, faces.begin(face), faces.end(face));
-  });
+  const MeshFaces mesh_faces(mesh, rules);
 
   // Corners sorted by vertex: starts[v] .. starts[v + 1] in `around`.
   Buffer<std::uint32_t> starts, around;
   starts.resize(vertex_count + 2);
   std::fill(starts.begin(), starts.end(), 0u);
   around.resize(corner_count);
-  for (const std::uint32_t vertex : mesh.corners) ++starts[vertex + 2];
+  for (const std::uint32_t corner : mesh.corners) ++starts[mesh_faces.vertex(corner) + 2];
   std::inclusive_scan(starts.begin(), starts.end(), starts.begin());
   // Shifted by one place, the running starts of the fill become the starts themselves.
   for (std::size_t corner = 0; corner < corner_count; ++corner)
-    around[starts[mesh.corners[corner] + 1]++] = static_cast<std::uint32_t>(corner);
+    around[starts[mesh_faces.vertex(mesh.corners[corner]) + 1]++] = static_cast<std::uint32_t>(corner);
 
-  if (crease_angle >= std::numbers::pi) {
+  if (rules.crease_angle >= std::numbers::pi) {
     mesh.normals.resize(vertex_count);
     for_each_block(vertex_count, [&](std::size_t, std::size_t first, std::size_t last) {
-      VertexFan fan(mesh, faces, face_normals, -1);
+      VertexFan fan(mesh_faces, -1);
       for (std::size_t v = first; v < last; ++v) {
         fan.gather(&around[starts[v]], &around[0] + starts[v + 1], false);
         mesh.normals[v] = fan.normal(VertexFan::kAll);
       }
     });
+    for (std::size_t v = 0; v < mesh_faces.welded.size(); ++v) mesh.normals[v] = mesh.normals[mesh_faces.welded[v]];
     return;
   }
 
-  const double crease_cosine = std::cos(std::max(crease_angle, 0.0)) - kCosineTolerance;
+  const double crease_cosine = std::cos(std::max(rules.crease_angle, 0.0)) - kCosineTolerance;
   const std::size_t blocks = (vertex_count + kBlock - 1) / kBlock;
   std::vector<std::vector<Vec3f>> block_normals(blocks);
   mesh.normal_corners.resize(corner_count);
   for_each_block(vertex_count, [&](std::size_t block, std::size_t first, std::size_t last) {
-    VertexFan fan(mesh, faces, face_normals, crease_cosine);
+    VertexFan fan(mesh_faces, crease_cosine);
     std::vector<Vec3f>& normals = block_normals[block];
     normals.reserve(last - first);
     std::vector<std::uint32_t> numbers;  // of the groups, at their roots
@@ -252,12 +334,13 @@ void compute_vertex_normals(PolygonMesh& mesh, double crease_angle) {
     std::copy(block_normals[block].begin(), block_normals[block].end(), mesh.normals.begin() + block_starts[block]);
     block_normals[block] = {};
   });
-  if (mesh.normals.size() == vertex_count) {
+  if (mesh.normals.size() == vertex_count && !rules.across_pieces) {
     mesh.normal_corners = {};
     return;
   }
   for_each_block(corner_count, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t c = first; c < last; ++c) mesh.normal_corners[c] += block_starts[mesh.corners[c] / kBlock];
+    for (std::size_t c = first; c < last; ++c)
+      mesh.normal_corners[c] += block_starts[mesh_faces.vertex(mesh.corners[c]) / kBlock];
   });
 }
 

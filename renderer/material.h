@@ -43,6 +43,7 @@ struct Material {
 
   bool special_optics = false;    ///< thin, a conductor, or in a scene that tracks media or has rough surfaces
   bool conductor = false;         ///< k_s rises to 1 by Schlick's formula
+  bool free_reflections = false;  ///< mirrored directions are followed below their facet: FacetReflections::classic
   bool thin = false;              ///< a sheet without an inside
   bool has_inside = false;        ///< transmits and is not thin
   bool absorbs = false;           ///< has an inside that is not clear

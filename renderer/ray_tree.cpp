@@ -9,6 +9,7 @@
 #include <span>
 
 #include "geometry/surface_batch.h"
+#include "renderer/facet_shading.h"
 #include "renderer/features.h"
 #include "renderer/media.h"
 #include "renderer/ray_queue.h"
@@ -76,6 +77,7 @@ struct SampleTracer::State {
     if (tracks_paths()) pending_paths.reserve(pending.capacity());
     for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
     instanced = !scene.shapes->instances.empty();
+    if (shades_facets()) facets.emplace(scene);
     if (follows_shadows()) shadow_paths.emplace(scene, kBatchSize);
     if (tracks_media()) {
       media.emplace(scene);
@@ -93,6 +95,7 @@ struct SampleTracer::State {
   bool tracks_media() const { return kFeatures.media && scene.tracks_media; }
   bool follows_shadows() const { return kFeatures.transparent_shadows && scene.transparent_shadows; }
   bool tracks_paths() const { return kFeatures.rough_surfaces && scene.rough_surfaces; }
+  bool shades_facets() const { return kFeatures.facet_shading && scene.shades_facets; }
   bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
   void trace_batch(Coherence coherence, bool eye);
   void find_hits();
@@ -111,7 +114,11 @@ struct SampleTracer::State {
   bool passes(std::size_t i, const Hit& hit);
   Rgb escaping_weight(std::size_t i) const { return batch.weight(i) * media->transmitted(batch.media[i], kInfinity); }
   void add_lights();
+  template <bool kFacets>
+  void add_lights_to_points();
+  void add_facets();
   void follow_shadows(std::size_t count);
+  void bend_normals();
   void spawn();
   unsigned spawn_specially(std::size_t i);
   unsigned spawn_on_path(std::size_t i, const ShadingPoint& point, float relative_index, MediaId before, MediaId after);
@@ -150,6 +157,9 @@ struct SampleTracer::State {
   bool wants_texture = false;
   SampleWindow eye_window;  ///< of the chunk's eye rays
   bool instanced = false;   ///< the scene has instances
+
+  /// Where some facets are shaded in a way of their own.
+  std::optional<FacetShading> facets;
 
   /// Where something transmits and shadows show it.
   std::optional<ShadowPaths> shadow_paths;
@@ -263,6 +273,7 @@ void SampleTracer::State::find_hits() {
   }
   prefetch_triangles(*scene.shapes);
   find_surfaces(*scene.shapes, rays, hits, wants_texture, shading.surfaces);
+  if (shades_facets()) add_facets();
   shading.turn_to_rays(rays);
 }
 
@@ -367,15 +378,35 @@ void SampleTracer::State::prefetch_triangles(const ShapeSet& shapes) const {
   });
 }
 
+[[gnu::noinline]] void SampleTracer::State::add_facets() {
+  facets->begin_batch();
+  for (const std::uint32_t i : batch_points()) {
+    SurfacePoint point = shading.surfaces[i];
+    facets->add(i, hits[i], rays.direction(i), batch.level[i] == 1, point);
+    shading.surfaces.set(i, point);
+  }
+}
+
 void SampleTracer::State::add_lights() {
   if (point_count == 0) return;
+  if (shades_facets())
+    add_lights_to_points<true>();
+  else
+    add_lights_to_points<false>();
+}
+
+/// kFacets: some facets are shaded in a way of their own.
+template <bool kFacets>
+void SampleTracer::State::add_lights_to_points() {
   for (const Light& light : scene.lights) {
     std::size_t count = 0;
-    shading.meet(rays, light, settings.highlights);
+    if (!kFacets) shading.meet(rays, light, settings.highlights);
     for (const std::uint32_t i : batch_points()) {
       const Material& material = *shading.materials[i];
-      if (!shading.is_before_light(i) || (!material.has_diffuse && !material.has_highlight)) continue;
-      const LocalLight local = local_light(shading.meeting(i), material, shading.diffuse(i), light);
+      if (!kFacets && !shading.is_before_light(i)) continue;
+      if (!material.has_diffuse && !material.has_highlight) continue;
+      LocalLight local = kFacets ? facets->light(i, shading_point(i), light, settings.highlights)
+                                 : local_light(shading.meeting(i), material, shading.diffuse(i), light);
       if (!local.lit) continue;
       Rgb shadowed = local.diffuse;
       if (settings.shadowed_highlights)
@@ -387,7 +418,8 @@ void SampleTracer::State::add_lights() {
         results.radiance[batch.sample[i]] += batch.weight(i) * shadowed;
         continue;
       }
-      shadow_rays.set(count, child_origin(i, false), local.direction, local.distance);
+      const Vec3f origin = kFacets ? facets->shadow_origin(i, shading_point(i), light, local) : child_origin(i, false);
+      shadow_rays.set(count, origin, local.direction, local.distance);
       shadow_samples[count] = batch.sample[i];
       shadow_light[count] = batch.weight(i) * shadowed;
       if (tracks_media()) shadow_media[count] = boundaries[i].before;
@@ -430,7 +462,16 @@ void SampleTracer::State::add_lights() {
   statistics.intersection_seconds += seconds_since(start);
 }
 
+[[gnu::noinline]] void SampleTracer::State::bend_normals() {
+  for (const std::uint32_t i : batch_points()) {
+    ShadingPoint point = shading_point(i);
+    facets->bend(i, point);
+    shading.surfaces.shading_normal.set(i, point.surface.shading_normal);
+  }
+}
+
 void SampleTracer::State::spawn() {
+  if (shades_facets()) bend_normals();
   std::uint64_t branches_at_limit = 0;
   bool has_branched = false;
   for (const std::uint32_t i : batch_points()) {

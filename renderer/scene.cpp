@@ -12,6 +12,7 @@
 #include "renderer/groups.h"
 #include "renderer/scene_fields.h"
 #include "renderer/shape_assembly.h"
+#include "renderer/shape_shading.h"
 #include "renderer/tracer_choice.h"
 
 namespace raytree {
@@ -125,6 +126,12 @@ std::vector<std::string> features_in_use(const Scene& scene) {
   };
   add_features_of(shapes);
   for (const BoundedShapes& group : shapes.groups) add_features_of(group);
+  const auto note_shading = [&](const std::vector<ShapeSummary>& list) {
+    for (const ShapeSummary& shape : list)
+      if (!shape.shading.empty() && shape.shading != "phong") features.insert(shape.shading + " shading");
+  };
+  note_shading(scene.summary.shapes);
+  for (const GroupSummary& group : scene.summary.groups) note_shading(group.shapes);
   if (!shapes.instances.empty()) features.insert("instances");
   if (!shapes.planes.empty()) features.insert("planes");
   if (shapes.origin != Vec3d(0, 0, 0)) features.insert("recentering");
@@ -180,6 +187,19 @@ std::vector<const ShapeDescription*> all_shapes(const SceneDescription& scene) {
   for (const GroupDescription& group : scene.groups)
     for (const ShapeDescription& shape : group.shapes) shapes.push_back(&shape);
   return shapes;
+}
+
+/// Notes how each shape's facets are shaded, and whether any asks for more than its triangles.
+void resolve_shading(Scene& scene) {
+  for (const ShapeDescription* shape : all_shapes(scene.description))
+    scene.shape_shading.push_back(
+        {shading_of(*shape, scene.description.render.facets),
+         shape->half_distance > 0 ? static_cast<float>(std::min(1 / shape->half_distance, 1e30)) : 0.0f});
+  const auto note = [&](const BoundedShapes& list) {
+    for (const MeshEntry& entry : list.meshes) scene.shades_facets |= entry.facets != nullptr;
+  };
+  note(*scene.shapes);
+  for (const BoundedShapes& group : scene.shapes->groups) note(group);
 }
 
 void warn_of_open_glass(const Scene& scene, Warnings& warnings) {
@@ -284,6 +304,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
     check_light(light, {scene.description.name, 0, "lights." + light.name});
     scene.lights.push_back(make_light(light, origin));
   }
+  resolve_shading(scene);
   scene.background = BackgroundLight(scene.description.background);
   scene.ambient = scene.description.ambient;
   scene.camera = Camera(camera, scene.description.image.width, scene.description.image.height, origin,
@@ -300,7 +321,10 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   }
   // Where media or paths are tracked no surface is a plain one: one flag each serves the tracer's inner loops.
   const bool tracked = scene.tracks_media || scene.rough_surfaces;
+  const bool free_reflections = scene.description.render.facets.reflections == FacetReflections::classic;
   for (Material& material : scene.materials) {
+    material.free_reflections = free_reflections;
+    material.special_optics |= free_reflections;
     material.takes_on_the_way = material.absorbs || tracked;
     material.special_optics |= tracked;
   }

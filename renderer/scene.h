@@ -39,6 +39,7 @@ struct ShapeSummary {
   std::string kind;                         ///< "mesh", "sphere", ...
   std::string material;                     ///< empty: the default one, or the mesh file's
   std::vector<std::string> file_materials;  ///< that a mesh's file names, where they serve
+  std::string shading;                      ///< of its facets, "phong"; empty: it has none
   std::uint32_t id = 0;                     ///< as in the object_id channel
   std::uint64_t triangles = 0;              ///< handed to the intersector
   std::uint64_t spheres = 0;
@@ -90,6 +91,12 @@ struct PhaseSeconds {
   double build = 0;  ///< the intersector's own build
 };
 
+/// How hits on a shape's facets are shaded.
+struct ShapeShading {
+  ShadingMethod method = ShadingMethod::phong;
+  float inverse_half_distance = 0;  ///< see ShapeDescription::half_distance; 0: the shade does not fall
+};
+
 /// Stands for the material of an instance whose shapes keep their own.
 inline constexpr std::uint32_t kOwnMaterials = 0xffffffffu;
 
@@ -107,6 +114,7 @@ class Scene {
   std::unique_ptr<const RayIntersector> intersector;  ///< null when PrepareOptions::build was false
   std::vector<Material> materials;
   std::vector<std::uint32_t> shape_materials;  ///< [shape] -> index into materials, or kOwnMaterials
+  std::vector<ShapeShading> shape_shading;     ///< [shape]
   std::vector<Light> lights;
   BackgroundLight background;
   Rgb ambient;
@@ -115,6 +123,7 @@ class Scene {
   bool transparent_shadows = false;  ///< light is to be followed through what transmits, and something does
   bool tracks_media = false;         ///< overlapping media are told apart by priority, and some material sets one
   bool rough_surfaces = false;       ///< some material in use perturbs normals
+  bool shades_facets = false;        ///< some mesh has a FacetRecord
   SmallObjects small_objects;        ///< as the camera sees them; none unless the anti-aliasing asks for them
 
   /// Index into materials of what a hit shows: the instance's, or else the triangle's own, or else the shape's.

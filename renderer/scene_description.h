@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/error.h"
+#include "geometry/facet_weights.h"
 #include "geometry/patch_surface.h"
 #include "geometry/polygon_mesh.h"
 #include "geometry/vec.h"
@@ -62,6 +63,34 @@ struct TessellationSettings {
   int rate = 0;             ///< segments of every edge, to 1024; 0: as many as the tolerance asks for
 };
 
+/// What a facet's light is made of.
+enum class ShadingMethod {
+  flat,     ///< one normal a facet
+  gouraud,  ///< light found at the corners and interpolated (Gouraud 1971)
+  phong,    ///< normals of the corners interpolated and made unit (Phong 1973, eq. 4.4)
+  limit     ///< the normal of the surface that the facets stand for; as phong where there is none
+};
+
+/// What becomes of shadow rays near the line where the light grazes a smooth shape made of facets.
+enum class ShadowTerminator {
+  classic,  ///< they start on the facet and meet its neighbors
+  offset    ///< they start off it, on the surface that the vertex normals tell of (Hanika 2021)
+};
+
+/// What becomes of directions that are mirrored about an interpolated normal and lead below the facet.
+enum class FacetReflections {
+  classic,    ///< they are followed: into the facet itself
+  clamped,    ///< they are turned back to its upper side
+  consistent  ///< none arises: normals are bent continuously before (Reshetov, Soupikov and Mark 2010)
+};
+
+/// Shading of facets, for all shapes.
+struct FacetSettings {
+  std::optional<ShadingMethod> shading;  ///< in place of what shapes ask for
+  ShadowTerminator shadow_terminator = ShadowTerminator::classic;
+  FacetReflections reflections = FacetReflections::clamped;
+};
+
 enum class HighlightForm {
   reflected,  ///< Phong 1973, eq. 4.5: angle between reflected light and the line of sight
   halfway     ///< Whitted 1980, eq. 1: angle between normal and halfway vector
@@ -81,6 +110,7 @@ struct RenderSettings {
   double distance_attenuation = 0;  ///< a of max(0, 1 - a t) on child segments, per scene unit; 0: off
   int rough_samples = 16;           ///< facets that a sample's first rough bounce is made of; later ones have one each
   TessellationSettings tessellation;
+  FacetSettings facets;
 };
 /// Bounds what a thread keeps of a tree: 2 rough_samples batches of rays.
 inline constexpr int kMaxRoughSamples = 1024;
@@ -231,6 +261,14 @@ struct MeshShape {
   std::shared_ptr<PolygonMesh> mesh;
 };
 
+/// How vertex normals are found from the facets around, whatever normals there are else.
+struct Smoothing {
+  enum class Method { angle, unit, area, edges, terminating_edges, corners, analytic };
+  Method method = Method::angle;  ///< see geometry/vertex_normals.h; analytic: those of the surface
+  double crease_angle = 40;       ///< degrees; facets that meet at a larger angle share no normal
+  bool across_pieces = false;     ///< vertices of equal position count as one
+};
+
 /// Lists of indices into positions, `Count` each.
 template <std::size_t Count>
 using IndexLists = std::vector<std::array<std::uint32_t, Count>>;
@@ -247,9 +285,13 @@ struct PatchesShape {
   bool flip = false;                        ///< turned inside out
   DegenerateNormal degenerate_normals = DegenerateNormal::limit;
 };
+/// `sides` of what is round: flat facets around it; 0: exact.
+inline constexpr int kMostSides = 4096;
 struct SphereShape {
   Vec3d center{0, 0, 0};
   double radius = 1;
+  int sides = 0;
+  int stacks = 0;  ///< rings of facets from pole to pole (y); 0: half of the sides, at least 2
 };
 /// Infinite, through `point`.
 struct PlaneShape {
@@ -260,6 +302,7 @@ struct DiscShape {
   Vec3d center{0, 0, 0};
   Vec3d normal{0, 1, 0};
   double radius = 1;
+  int sides = 0;
 };
 inline constexpr double kLargestScatterHeight = 1e18;
 /// The lateral surface between two circles about one axis, open at both ends: a cylinder where the radii are equal, a
@@ -267,6 +310,8 @@ inline constexpr double kLargestScatterHeight = 1e18;
 struct ConeShape {
   Vec3d base{0, 0, 0}, apex{0, 1, 0};       ///< centers of the circles; apart
   double base_radius = 1, apex_radius = 0;  ///< not negative, not both 0
+  int sides = 0;
+  int stacks = 1;  ///< rings of facets
 };
 /// A fractal height field over the square [-size/2, size/2]^2 in x and z.
 struct TerrainShape {
@@ -318,6 +363,13 @@ struct ShapeDescription {
   std::string name;
   std::string material;  ///< a name in SceneDescription::materials; empty: the default material
   Matrix44d transform;   ///< object to world, row vectors; identity by default
+  /// Absent: flat where a mesh's normals are said to be; else phong.
+  std::optional<ShadingMethod> shading;
+  FacetInterpolation interpolation = FacetInterpolation::barycentric;
+  /// Absent: a mesh's by its `normals`; those of the surface where there is one.
+  std::optional<Smoothing> smoothing;
+  /// Flat: distance to the light over which the shade falls to a half (Warnock, in Phong 1973, p. 3-6); 0: any.
+  double half_distance = 0;
   ShapeKind kind;
   SourceLocation where;  ///< for messages
 };

@@ -77,6 +77,53 @@ struct EnumTable<HighlightForm> {
        {E::halfway, "halfway", "angle between normal and halfway vector, Whitted 1980, eq. 1"}}};
 };
 template <>
+struct EnumTable<ShadingMethod> {
+  using E = ShadingMethod;
+  static constexpr std::array<EnumEntry<E>, 4> entries{
+      {{E::flat, "flat", "one normal a facet"},
+       {E::gouraud, "gouraud",
+        "light is found at the facet's corners, highlights too, and interpolated (Gouraud 1971)"},
+       {E::phong, "phong", "the corners' normals are interpolated and made unit (Phong 1973)"},
+       {E::limit, "limit", "the normal of the surface that the facets stand for; as phong where there is none"}}};
+};
+template <>
+struct EnumTable<FacetInterpolation> {
+  using E = FacetInterpolation;
+  static constexpr std::array<EnumEntry<E>, 3> entries{
+      {{E::barycentric, "barycentric", "linear over the triangles that polygons are cut in"},
+       {E::bilinear, "bilinear", "quads by the parameters of a bilinear patch, larger ones by mean value coordinates"},
+       {E::scanline, "scanline",
+        "along edges, then along the picture's rows, as in 1971: it changes as a polygon turns"}}};
+};
+template <>
+struct EnumTable<Smoothing::Method> {
+  using E = Smoothing::Method;
+  static constexpr std::array<EnumEntry<E>, 7> entries{
+      {{E::angle, "angle", "mean of unit normals of the facets, weighted by their angle at the vertex"},
+       {E::unit, "unit", "mean of unit normals"},
+       {E::area, "area", "weighted by area, Phong 1973, eq. 4.2"},
+       {E::edges, "edges", "eq. 4.1 over the number of edges: facets of fewer edges count more"},
+       {E::terminating_edges, "terminating_edges", "sum of cross products of the edges that end there, eq. 4.3"},
+       {E::corners, "corners", "mean of those cross products made unit (Gouraud 1971, p. 30)"},
+       {E::analytic, "analytic", "the surface's own, of curved surfaces and of round shapes with `sides`"}}};
+};
+template <>
+struct EnumTable<ShadowTerminator> {
+  using E = ShadowTerminator;
+  static constexpr std::array<EnumEntry<E>, 2> entries{
+      {{E::classic, "classic", "shadow rays start on the facet, whose neighbors shade it where the light grazes"},
+       {E::offset, "offset", "they start off it, where the vertex normals say that the surface is (Hanika 2021)"}}};
+};
+template <>
+struct EnumTable<FacetReflections> {
+  using E = FacetReflections;
+  static constexpr std::array<EnumEntry<E>, 3> entries{
+      {{E::classic, "classic", "rays mirrored to below their facet are followed, and meet it"},
+       {E::clamped, "clamped", "they are turned back above it"},
+       {E::consistent, "consistent",
+        "normals are bent so that none leads below it, continuously (Reshetov, Soupikov and Mark 2010)"}}};
+};
+template <>
 struct EnumTable<Falloff> {
   using E = Falloff;
   static constexpr std::array<EnumEntry<E>, 3> entries{
@@ -366,6 +413,18 @@ void visit_fields(Visitor& visit, T& tessellation) {
         tessellation.rate);
 }
 
+template <class Visitor, Is<FacetSettings> T>
+void visit_fields(Visitor& visit, T& facets) {
+  visit(Field{.key = "shading",
+              .text = "Shading of all facets, in place of what shapes ask for",
+              .absent = "as shapes ask for"},
+        facets.shading);
+  visit(Field{.key = "shadow_terminator", .text = "Where shadow rays start on facets with vertex normals of their own"},
+        facets.shadow_terminator);
+  visit(Field{.key = "reflections", .text = "What keeps mirrored directions above facets with such normals"},
+        facets.reflections);
+}
+
 template <class Visitor, Is<RenderSettings> T>
 void visit_fields(Visitor& visit, T& render) {
   visit(Field{.key = "depth", .text = "Levels of the ray tree; the eye ray is level 1", .range = {1, 1'000'000}},
@@ -404,6 +463,7 @@ void visit_fields(Visitor& visit, T& render) {
               .range = {1, kMaxRoughSamples}},
         render.rough_samples);
   visit(Field{.key = "tessellation", .text = "How finely curved surfaces are cut in triangles"}, render.tessellation);
+  visit(Field{.key = "facets", .text = "How facets are shaded, over all shapes"}, render.facets);
 }
 
 template <class Visitor, Is<CameraDescription> T>
@@ -756,6 +816,30 @@ void visit_fields(Visitor& visit, T& rules) {
         rules.holes);
 }
 
+template <class Visitor, Is<Smoothing> T>
+void visit_fields(Visitor& visit, T& normals) {
+  visit(Field{.key = "method", .text = "What each facet gives to the normal of its corner"}, normals.method);
+  visit(Field{.key = "crease_angle",
+              .text = "Facets that meet at a larger angle share no normal",
+              .unit = "degrees",
+              .range = {0, 180}},
+        normals.crease_angle);
+  visit(
+      Field{.key = "across_pieces",
+            .text = "Whether vertices of equal position count as one, so that pieces of the shape share normals along "
+                    "their boundary"},
+      normals.across_pieces);
+}
+
+/// Facets in place of what is round.
+template <class Visitor>
+void visit_sides(Visitor& visit, auto& sides) {
+  visit(
+      Field{
+          .key = "sides", .text = "Flat facets around; at least 3, or 0 for the exact shape", .range = {0, kMostSides}},
+      sides);
+}
+
 template <class Visitor, Is<MeshShape> T>
 void visit_fields(Visitor& visit, T& mesh) {
   visit(Field{.key = "file",
@@ -819,6 +903,11 @@ template <class Visitor, Is<SphereShape> T>
 void visit_fields(Visitor& visit, T& sphere) {
   visit(Field{.key = "center", .text = "Center", .unit = "scene units"}, sphere.center);
   visit(Field{.key = "radius", .text = "Radius", .unit = "scene units", .range = kPositive}, sphere.radius);
+  visit_sides(visit, sphere.sides);
+  visit(Field{.key = "stacks",
+              .text = "With sides: rings of facets from pole to pole, along y; 0: half as many as sides, at least 2",
+              .range = {0, kMostSides}},
+        sphere.stacks);
 }
 
 template <class Visitor, Is<PlaneShape> T>
@@ -832,6 +921,7 @@ void visit_fields(Visitor& visit, T& disc) {
   visit(Field{.key = "center", .text = "Center", .unit = "scene units"}, disc.center);
   visit(Field{.key = "normal", .text = "Direction to the outside; any length but zero", .nonzero = true}, disc.normal);
   visit(Field{.key = "radius", .text = "Radius", .unit = "scene units", .range = kPositive}, disc.radius);
+  visit_sides(visit, disc.sides);
 }
 
 template <class Visitor, Is<ConeShape> T>
@@ -846,6 +936,8 @@ void visit_fields(Visitor& visit, T& cone) {
               .unit = "scene units",
               .range = kNotNegative},
         cone.apex_radius);
+  visit_sides(visit, cone.sides);
+  visit(Field{.key = "stacks", .text = "With sides: rings of facets", .range = {1, kMostSides}}, cone.stacks);
 }
 
 template <class Visitor, Is<TerrainShape> T>
@@ -930,6 +1022,23 @@ void visit_fields(Visitor& visit, T& shape) {
       Field{
           .key = "transform", .text = "Object to world: a step or a list of steps, applied in order", .absent = "none"},
       shape.transform);
+  visit(Field{.key = "shading",
+              .text = "How facets are shaded; exact shapes have none",
+              .absent = "flat where a mesh's `normals` are; else phong"},
+        shape.shading);
+  visit(Field{.key = "interpolation", .text = "How gouraud and phong interpolate inside polygons"},
+        shape.interpolation);
+  visit(Field{.key = "smoothing",
+              .text = "Makes vertex normals of the facets, whatever normals there are else",
+              .absent = "a mesh's as `normals` says; those of the surface where there is one"},
+        shape.smoothing);
+  visit(Field{.key = "half_distance",
+              .text = "With flat: the distance from the light (of a directional one: from the eye) at which the shade "
+                      "has fallen to a half, so that parallel planes differ (Warnock, in Phong 1973, p. 6); 0: it does "
+                      "not fall",
+              .unit = "scene units",
+              .range = kNotNegative},
+        shape.half_distance);
 }
 
 template <class Visitor, Is<TransformStep> T>
@@ -974,12 +1083,12 @@ void visit_fields(Visitor& visit, T& scene) {
 
 /// A struct with a table.
 template <class T>
-concept Table =
-    Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, TessellationSettings> || Is<T, RenderSettings> ||
-    Is<T, CameraDescription> || Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, StripesPattern> ||
-    Is<T, NoisePattern> || Is<T, BumpDescription> || Is<T, Crease> || Is<T, SharpCorner> || Is<T, SubdivisionRules> ||
-    Is<T, AngleWeight> || Is<T, HighlightDescription> || Is<T, MaterialDescription> || Is<T, FaceGroup> ||
-    Is<T, ShapeDescription> || Is<T, GroupDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
+concept Table = Is<T, ImageDescription> || Is<T, AdaptiveSampling> || Is<T, TessellationSettings> ||
+    Is<T, FacetSettings> || Is<T, Smoothing> || Is<T, RenderSettings> || Is<T, CameraDescription> ||
+    Is<T, LightDescription> || Is<T, CheckerPattern> || Is<T, StripesPattern> || Is<T, NoisePattern> ||
+    Is<T, BumpDescription> || Is<T, Crease> || Is<T, SharpCorner> || Is<T, SubdivisionRules> || Is<T, AngleWeight> ||
+    Is<T, HighlightDescription> || Is<T, MaterialDescription> || Is<T, FaceGroup> || Is<T, ShapeDescription> ||
+    Is<T, GroupDescription> || Is<T, TransformStep> || Is<T, SceneDescription>;
 
 /// An element of a list keyed by name.
 template <class T>

@@ -150,6 +150,7 @@ std::string scene_reference() {
             AdaptiveSampling{});
   out.table("render.tessellation", "What curved surfaces become: triangles, no more than the view needs.",
             TessellationSettings{});
+  out.table("render.facets", "How facets are shaded; see docs/shading.md.", FacetSettings{});
   out.alternatives("background", Background{});
   out.table("cameras.NAME", "One camera.", CameraDescription{});
   out.table("lights.NAME", "One light; these keys and those of its type.", LightDescription{});
@@ -164,6 +165,8 @@ std::string scene_reference() {
   out.table("groups.NAME", "One group of shapes, in a space of its own.", GroupDescription{});
   out.table("shapes.NAME", "One shape; these keys and those of its type.", ShapeDescription{});
   out.alternatives("shapes.NAME", ShapeKind{});
+  out.table("shapes.NAME.smoothing", "Vertex normals as Gouraud and Phong found them; see docs/shading.md.",
+            Smoothing{});
   out.table("shapes.NAME.subdivision",
             "What a mesh is as a cage. OpenSubdiv's tags in an OBJ (`t`) join these keys, which are the stronger ones; "
             "without "

@@ -42,16 +42,32 @@ Branches thin_branches(const ShadingPoint& point, float index) {
   return result;
 }
 
-}  // namespace
+/// The same point where the shading normal alone counts, turned to the viewer: nothing keeps its children on a side.
+ShadingPoint without_facet(const ShadingPoint& point) {
+  ShadingPoint free = point;
+  SurfacePoint& surface = free.surface;
+  if (point.direction.dot(surface.shading_normal) > 0) surface.shading_normal = -surface.shading_normal;
+  surface.geometric_normal = surface.shading_normal;
+  return free;
+}
 
-[[gnu::noinline]] Branches special_branches(const ShadingPoint& point, float index) {
+Branches branches_by_kind(const ShadingPoint& point, float index) {
   const Material& material = *point.material;
   if (material.conductor) return conductor_branches(point);
   return material.thin ? thin_branches(point, index) : plain_branches(point);
 }
 
+}  // namespace
+
+[[gnu::noinline]] Branches special_branches(const ShadingPoint& point, float index) {
+  if (point.material->free_reflections) return branches_by_kind(without_facet(point), index);
+  return branches_by_kind(point, index);
+}
+
 [[gnu::noinline]] Branches branches_between(const ShadingPoint& point, float relative_index) {
   if (point.material->thin || point.material->conductor) return special_branches(point, relative_index);
+  if (point.material->free_reflections)
+    return dielectric_branches(without_facet(point), relative_index, 1 / relative_index);
   return dielectric_branches(point, relative_index, 1 / relative_index);
 }
 

@@ -1,8 +1,5 @@
 #include "renderer/shape_list.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -12,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "geometry/faceted_quadric.h"
 #include "geometry/mesh_file.h"
 #include "geometry/patch_surface.h"
 #include "geometry/subdivision_surface.h"
@@ -22,8 +20,11 @@
 #include "geometry/vertex_normals.h"
 #include "renderer/camera.h"
 #include "renderer/groups.h"
+#include "renderer/mesh_transform.h"
 #include "renderer/patch_shape.h"
 #include "renderer/scatter.h"
+#include "renderer/scene_fields.h"
+#include "renderer/shape_shading.h"
 
 namespace raytree {
 
@@ -59,54 +60,12 @@ double uniform_scale(const Matrix44d& m, const std::string& kind, const SourceLo
 
 namespace {
 
-constexpr std::size_t kGrain = 65536;
-
-template <class Function>
-void for_each_index(std::size_t count, Function&& function) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) function(i);
-  });
-}
-
-Vec3d transformed_vector(const Vec3d& vector, const Matrix44d& m) {
-  Vec3d result;
-  m.multDirMatrix(vector, result);
-  return result;
-}
-
-/// Normals go by the inverse transpose of the linear part.
-Vec3d transformed_normal(const Vec3d& normal, const Matrix44d& inverse_transpose) {
-  return unit(transformed_vector(normal, inverse_transpose));
-}
-
 /// The unit normal of a plane or disc as its description has it, in the world.
 Vec3d checked_normal(const Vec3d& normal, const Matrix44d& transform, const SourceLocation& where) {
   Vec3d world = transformed_vector(normal, transform.inverse().transposed());
   const double length = world.length();
   require(length > 0 && std::isfinite(length), "a normal needs a direction, and numbers that are finite", where);
   return world / length;
-}
-
-bool mirrors(const Matrix44d& m) { return m.determinant() < 0; }
-
-void transform_mesh(TriangleMesh& mesh, const Matrix44d& m) {
-  if (m == Matrix44d()) return;
-  mesh.origin = transformed_point(mesh.origin, m);
-  for_each_index(mesh.positions.size(),
-                 [&](std::size_t i) { mesh.positions[i] = Vec3f(transformed_vector(Vec3d(mesh.positions[i]), m)); });
-  const Matrix44d inverse_transpose = m.inverse().transposed();
-  for_each_index(mesh.normals.size(), [&](std::size_t i) {
-    mesh.normals[i] = Vec3f(transformed_normal(Vec3d(mesh.normals[i]), inverse_transpose));
-  });
-  if (!mirrors(m)) return;
-  // A mirrored triangle is wound the other way round.
-  const auto reverse = [](Buffer<std::uint32_t>& corners) {
-    for_each_index(corners.size() / 3, [&](std::size_t i) { std::swap(corners[3 * i + 1], corners[3 * i + 2]); });
-  };
-  // Arrays indexed per position are reversed with the corners.
-  reverse(mesh.corners);
-  reverse(mesh.normal_corners);
-  reverse(mesh.texture_corners);
 }
 
 void count_faces(const PolygonMesh& mesh, ShapeSummary& summary) {
@@ -117,6 +76,7 @@ void count_faces(const PolygonMesh& mesh, ShapeSummary& summary) {
   for (const std::uint32_t size : mesh.face_sizes) ++summary.faces_by_size[size == 3 ? 0 : size == 4 ? 1 : 2];
 }
 
+/// The normals that the mesh's key `normals` asks for; `flat` alone has been taken for a way of shading.
 void apply_normal_source(PolygonMesh& mesh, const MeshShape& shape, const SourceLocation& where, Warnings& warnings) {
   const bool from_file = shape.normals == NormalSource::file && !mesh.normals.empty();
   if (from_file) {
@@ -126,7 +86,7 @@ void apply_normal_source(PolygonMesh& mesh, const MeshShape& shape, const Source
   }
   mesh.normals = {};
   mesh.normal_corners = {};
-  if (shape.normals != NormalSource::flat) compute_vertex_normals(mesh, shape.crease_angle * std::numbers::pi / 180);
+  compute_vertex_normals(mesh, shape.crease_angle * std::numbers::pi / 180);
 }
 
 /// Fills the assembly of one list of shapes.
@@ -156,29 +116,74 @@ class Assembler {
     summary.name = shape.name;
     summary.id = id + 1;
     check_transform(shape.transform, shape.where);
+    check_shading(shape);
+    method_ = shading_of(shape, settings());
     std::visit([&](auto& kind) { add_kind(kind, shape, id, summary); }, shape.kind);
     if (!summary.bounds.isInfinite() && !summary.bounds.isEmpty())
       require(is_within_reach(summary.bounds.min) && is_within_reach(summary.bounds.max),
               "the shape reaches further than 1e12 units from the origin", shape.where);
   }
 
-  void add_mesh(TriangleMesh&& mesh, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+  const FacetSettings& settings() const { return scene_.render.facets; }
+
+  void add_mesh(TriangleMesh&& mesh, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary,
+                std::unique_ptr<FacetRecord> record) {
     transform_mesh(mesh, shape.transform);
+    if (record) finish_record(mesh, shape, method_, settings(), *record);
+    summary.shading = enum_name(method_);
     summary.triangles = mesh.triangle_count();
     PolygonMesh view;  // bounds() asks for positions and origin alone
     view.origin = mesh.origin;
     view.positions.swap(mesh.positions);
     summary.bounds = bounds(view);
     view.positions.swap(mesh.positions);
-    assembly.meshes.push_back({std::move(mesh), id});
+    assembly.meshes.push_back({std::move(mesh), id, {}, std::move(record)});
+  }
+
+  /// Triangles that a generator made, with the normals of what they stand for.
+  void add_triangles(TriangleMesh&& mesh, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+    set_vertex_normals(mesh, shape, method_);
+    add_mesh(std::move(mesh), shape, id, summary, begin_record(shape, method_, settings()));
+  }
+
+  /// Polygons with their normals set. `surface`: what they stand for; null: not known, or not wanted.
+  void add_polygons(PolygonMesh&& mesh, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary,
+                    std::unique_ptr<TrueSurface> surface = nullptr) {
+    std::unique_ptr<FacetRecord> record = begin_record(shape, method_, settings());
+    if (record) {
+      record->surface = std::move(surface);
+      if (record->interpolation != FacetInterpolation::barycentric) note_polygons(mesh, *record);
+    }
+    add_mesh(triangulate(std::move(mesh), shape.where, warnings_), shape, id, summary, std::move(record));
+  }
+
+  /// A round shape cut in facets.
+  template <class MakeSurface>
+  void add_faceted(PolygonMesh&& mesh, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary,
+                   const MakeSurface& make_surface) {
+    count_faces(mesh, summary);
+    std::unique_ptr<TrueSurface> surface = method_ == ShadingMethod::limit ? make_surface(mesh) : nullptr;
+    set_vertex_normals(mesh, shape, method_, true);
+    add_polygons(std::move(mesh), shape, id, summary, std::move(surface));
   }
 
   /// What every curved shape becomes; `surface` lies in the shape's space.
-  void add_surface(const ParametricSurface& surface, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
+  void add_surface(std::shared_ptr<const ParametricSurface> surface, const ShapeDescription& shape, ShapeId id,
+                   ShapeSummary& summary) {
     begin_phase("tessellating " + shape.name);
     const SurfaceTessellation tessellation(scene_, chosen_camera(scene_, options_.camera),
                                            options_.measure_tessellation);
-    add_mesh(tessellation.make(surface, shape, places_, summary, warnings_), shape, id, summary);
+    FacetParameters parameters;
+    const bool by_surface = method_ == ShadingMethod::limit;
+    TriangleMesh mesh =
+        tessellation.make(*surface, shape, places_, summary, warnings_, by_surface ? &parameters : nullptr);
+    set_vertex_normals(mesh, shape, method_);
+    std::unique_ptr<FacetRecord> record = begin_record(shape, method_, settings());
+    if (by_surface) {
+      record->surface = true_surface(std::move(surface), std::move(parameters));
+      record->reversed = mirrors(shape.transform);
+    }
+    add_mesh(std::move(mesh), shape, id, summary, std::move(record));
   }
 
   void add_kind(MeshShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
@@ -208,8 +213,9 @@ class Assembler {
             {shape.where,
              "subdivision tags not used, the polygons themselves are drawn; the shape's key subdivision "
              "(\"subdivision\": {}) makes a smooth surface of them"});
-      apply_normal_source(*mesh, kind, shape.where, warnings_);
-      add_mesh(triangulate(std::move(*mesh), shape.where, warnings_), shape, id, summary);
+      if (method_ != ShadingMethod::flat && !shape.smoothing) apply_normal_source(*mesh, kind, shape.where, warnings_);
+      set_vertex_normals(*mesh, shape, method_, false);
+      add_polygons(std::move(*mesh), shape, id, summary);
     }
     tag_materials(groups, group_materials, assembly.meshes.back(), summary);
   }
@@ -217,18 +223,16 @@ class Assembler {
   void add_kind(PatchesShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "patches";
     begin_phase("preparing " + shape.name);
-    const PatchSurface surface(surface_patches(kind, scene_.folder, shape.where, warnings_), surface_options(kind),
-                               shape.where, warnings_);
-    summary.faces_by_size[1] = static_cast<std::int64_t>(surface.face_count());
+    const auto surface = std::make_shared<PatchSurface>(surface_patches(kind, scene_.folder, shape.where, warnings_),
+                                                        surface_options(kind), shape.where, warnings_);
+    summary.faces_by_size[1] = static_cast<std::int64_t>(surface->face_count());
     add_surface(surface, shape, id, summary);
   }
 
   void add_subdivided(const PolygonMesh& mesh, const MeshShape& kind, const ShapeDescription& shape, ShapeId id,
                       ShapeSummary& summary) {
     const SubdivisionRules rules = joined(mesh.subdivision.value_or(SubdivisionRules{}), *kind.subdivision);
-    add_surface(*make_subdivision_surface(mesh, rules, shape.where, warnings_), shape, id, summary);
-    TriangleMesh& triangles = assembly.meshes.back().mesh;
-    if (kind.normals == NormalSource::flat) triangles.normals = {}, triangles.normal_corners = {};
+    add_surface(make_subdivision_surface(mesh, rules, shape.where, warnings_), shape, id, summary);
   }
 
   /// Gives each triangle the material of its face's group.
@@ -260,11 +264,24 @@ class Assembler {
     begin_phase("generating " + shape.name);
     TriangleMesh mesh = make_terrain({kind.triangles, kind.size, kind.height, kind.roughness, kind.seed});
     summary.faces_by_size[0] = mesh.triangle_count();
-    add_mesh(std::move(mesh), shape, id, summary);
+    add_triangles(std::move(mesh), shape, id, summary);
+  }
+
+  /// Whether a round shape is to be cut in facets.
+  static bool has_facets(int sides, const SourceLocation& where) {
+    require(sides == 0 || sides >= 3, "sides must be at least 3, or 0 for the exact shape", where);
+    return sides > 0;
   }
 
   void add_kind(SphereShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "sphere";
+    if (has_facets(kind.sides, shape.where)) {
+      require(kind.radius > 0, "a radius must be larger than 0", shape.where);
+      require(kind.stacks != 1, "stacks must be at least 2, or 0 for half of the sides", shape.where);
+      const int stacks = kind.stacks > 0 ? kind.stacks : std::max(2, kind.sides / 2);
+      add_faceted(faceted_sphere(kind.center, kind.radius, kind.sides, stacks), shape, id, summary, true_sphere);
+      return;
+    }
     summary.spheres = 1;
     const Vec3d center = transformed_point(kind.center, shape.transform);
     const double radius = kind.radius * uniform_scale(shape.transform, "a sphere", shape.where);
@@ -300,6 +317,12 @@ class Assembler {
 
   void add_kind(DiscShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "disc";
+    if (has_facets(kind.sides, shape.where)) {
+      require(kind.radius > 0 && kind.normal.length() > 0, "a disc needs a radius and a normal", shape.where);
+      add_faceted(faceted_disc(kind.center, kind.normal, kind.radius, kind.sides), shape, id, summary,
+                  [](const PolygonMesh&) { return std::unique_ptr<TrueSurface>(); });
+      return;
+    }
     const double scale = uniform_scale(shape.transform, "a disc", shape.where);
     const Vec3d center = transformed_point(kind.center, shape.transform);
     const Vec3d normal = checked_normal(kind.normal, shape.transform, shape.where);
@@ -311,14 +334,25 @@ class Assembler {
     assembly.discs.push_back({center, normal, radius, id});
   }
 
+  static void check_cone(const Cone& cone, const SourceLocation& where) {
+    require(cone.base_radius >= 0 && cone.apex_radius >= 0 && cone.base_radius + cone.apex_radius > 0,
+            "a cone needs radii that are not negative, and one that is larger than 0", where);
+    require((cone.apex - cone.base).length() > 0, "a cone's base and apex must lie apart", where);
+  }
+
   void add_kind(ConeShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "cone";
+    if (has_facets(kind.sides, shape.where)) {
+      const Cone cone{kind.base, kind.apex, kind.base_radius, kind.apex_radius};
+      check_cone(cone, shape.where);
+      add_faceted(faceted_cone(cone, kind.sides, kind.stacks), shape, id, summary,
+                  [&](const PolygonMesh& mesh) { return true_cone(mesh, cone); });
+      return;
+    }
     const double scale = uniform_scale(shape.transform, "a cone", shape.where);
     const Cone cone{transformed_point(kind.base, shape.transform), transformed_point(kind.apex, shape.transform),
                     kind.base_radius * scale, kind.apex_radius * scale};
-    require(cone.base_radius >= 0 && cone.apex_radius >= 0 && cone.base_radius + cone.apex_radius > 0,
-            "a cone needs radii that are not negative, and one that is larger than 0", shape.where);
-    require((cone.apex - cone.base).length() > 0, "a cone's base and apex must lie apart", shape.where);
+    check_cone(cone, shape.where);
     summary.bounds = bounds(cone);
     assembly.cones.push_back({cone, id});
   }
@@ -330,7 +364,7 @@ class Assembler {
                                     kind.height, kind.leaves, kind.leaf_size, kind.seed};
     TriangleMesh mesh = kind.part == TreePart::wood ? make_tree_wood(parameters) : make_tree_leaves(parameters);
     summary.faces_by_size[0] = mesh.triangle_count();
-    add_mesh(std::move(mesh), shape, id, summary);
+    add_triangles(std::move(mesh), shape, id, summary);
   }
 
   void add_kind(InstanceShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
@@ -361,6 +395,7 @@ class Assembler {
 
   const std::vector<ShapeDescription>* list_ = nullptr;  ///< under way
   ShapeId first_ = 0;
+  ShadingMethod method_ = ShadingMethod::phong;  ///< of the shape under way
   const SceneDescription& scene_;
   MeshMaterials& mesh_materials_;
   const ListPlaces& places_;

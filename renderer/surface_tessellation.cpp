@@ -109,7 +109,8 @@ SurfaceTessellation::SurfaceTessellation(const SceneDescription& scene, const Ca
 }
 
 TriangleMesh SurfaceTessellation::make(const ParametricSurface& surface, const ShapeDescription& shape,
-                                       const ListPlaces& places, ShapeSummary& summary, Warnings& warnings) const {
+                                       const ListPlaces& places, ShapeSummary& summary, Warnings& warnings,
+                                       FacetParameters* parameters) const {
   try {
     TessellationView view = view_;
     if (places) {
@@ -131,7 +132,7 @@ TriangleMesh SurfaceTessellation::make(const ParametricSurface& surface, const S
                           fmt::format("faces that stay coarser than the tolerance of {} pixels, at {} segments a side",
                                       settings_.tolerance, kLargestViewRate),
                           static_cast<std::int64_t>(found.coarse_faces)});
-    TriangleMesh mesh = tessellate(surface, found.rates);
+    TriangleMesh mesh = tessellate(surface, found.rates, parameters);
     TessellationSummary& record = summary.tessellation.emplace();
     record.triangles = mesh.triangle_count();
     record.bytes = bytes_of(mesh);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "geometry/error.h"
+#include "geometry/facet_record.h"
 #include "geometry/parametric_surface.h"
 #include "geometry/tessellation_view.h"
 #include "geometry/triangle_mesh.h"
@@ -35,9 +36,9 @@ class SurfaceTessellation {
 
   /// `surface` lies in the shape's space; so do the triangles. Uniform where the scene's rate says so; else no more
   /// than the view needs. Fills summary.tessellation and adds a warning for faces that stay coarser than the tolerance.
-  /// Throws Error (bad_input).
+  /// `parameters`: see tessellate(). Throws Error (bad_input).
   TriangleMesh make(const ParametricSurface& surface, const ShapeDescription& shape, const ListPlaces& places,
-                    ShapeSummary& summary, Warnings& warnings) const;
+                    ShapeSummary& summary, Warnings& warnings, FacetParameters* parameters = nullptr) const;
 
  private:
   TessellationSettings settings_;

@@ -27,7 +27,8 @@ TEST(BuiltinScenes, AllReadAndRoundTrip) {
     EXPECT_EQ(write_scene(read_scene(text, scene.name, "")), text) << scene.name;
   }
   for (const char* name : {"spheres-1980", "sphere-flake", "terrain", "forest", "stepwedge", "mirrors", "lens", "glass",
-                           "rough", "teapot", "goblet", "t-tail", "whitted-fig6", "whitted-fig7"})
+                           "rough", "teapot", "goblet", "t-tail", "whitted-fig6", "whitted-fig7", "cylinders", "cone",
+                           "faceted-sphere", "prisms", "molecule"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
 }
 

@@ -20,6 +20,10 @@ inline bool equal(const TessellationSettings& a, const TessellationSettings& b) 
   const auto& [tolerance, rate] = a;
   return tolerance == b.tolerance && rate == b.rate;
 }
+inline bool equal(const FacetSettings& a, const FacetSettings& b) {
+  const auto& [shading, terminator, reflections] = a;
+  return shading == b.shading && terminator == b.shadow_terminator && reflections == b.reflections;
+}
 inline bool equal(const ImageDescription& a, const ImageDescription& b) {
   const auto& [width, height] = a;
   return width == b.width && height == b.height;
@@ -31,11 +35,11 @@ inline bool equal(const CameraDescription& a, const CameraDescription& b) {
 }
 inline bool equal(const RenderSettings& a, const RenderSettings& b) {
   const auto& [depth, cutoff, antialias, adaptive, highlights, shadows, transparent, shadowed, fresnel, attenuation,
-               rough_samples, tessellation] = a;
+               rough_samples, tessellation, facets] = a;
   return depth == b.depth && cutoff == b.cutoff && equal(antialias, b.antialias) && equal(adaptive, b.adaptive) &&
          highlights == b.highlights && shadows == b.shadows && transparent == b.transparent_shadows &&
          shadowed == b.shadowed_highlights && fresnel == b.fresnel && attenuation == b.distance_attenuation &&
-         rough_samples == b.rough_samples && equal(tessellation, b.tessellation);
+         rough_samples == b.rough_samples && equal(tessellation, b.tessellation) && equal(facets, b.facets);
 }
 inline bool equal(const ConstantBackground& a, const ConstantBackground& b) {
   const auto& [color] = a;
@@ -130,20 +134,21 @@ inline bool equal(const PatchesShape& a, const PatchesShape& b) {
          lathe == b.lathe && angle == b.crease_angle && flip == b.flip && normals == b.degenerate_normals;
 }
 inline bool equal(const SphereShape& a, const SphereShape& b) {
-  const auto& [center, radius] = a;
-  return center == b.center && radius == b.radius;
+  const auto& [center, radius, sides, stacks] = a;
+  return center == b.center && radius == b.radius && sides == b.sides && stacks == b.stacks;
 }
 inline bool equal(const PlaneShape& a, const PlaneShape& b) {
   const auto& [point, normal] = a;
   return point == b.point && normal == b.normal;
 }
 inline bool equal(const ConeShape& a, const ConeShape& b) {
-  const auto& [base, apex, base_radius, apex_radius] = a;
-  return base == b.base && apex == b.apex && base_radius == b.base_radius && apex_radius == b.apex_radius;
+  const auto& [base, apex, base_radius, apex_radius, sides, stacks] = a;
+  return base == b.base && apex == b.apex && base_radius == b.base_radius && apex_radius == b.apex_radius &&
+         sides == b.sides && stacks == b.stacks;
 }
 inline bool equal(const DiscShape& a, const DiscShape& b) {
-  const auto& [center, normal, radius] = a;
-  return center == b.center && normal == b.normal && radius == b.radius;
+  const auto& [center, normal, radius, sides] = a;
+  return center == b.center && normal == b.normal && radius == b.radius && sides == b.sides;
 }
 inline bool equal(const TerrainShape& a, const TerrainShape& b) {
   const auto& [triangles, size, height, roughness, seed] = a;
@@ -186,10 +191,17 @@ inline bool equal(const MaterialDescription& a, const MaterialDescription& b) {
          bump.has_value() == b.bump.has_value() && (!bump || equal(*bump, *b.bump)) && roughness == b.roughness;
 }
 /// All but where it stood in its file.
+inline bool equal(const std::optional<Smoothing>& a, const std::optional<Smoothing>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  const auto& [method, crease_angle, across_pieces] = *a;
+  return method == b->method && crease_angle == b->crease_angle && across_pieces == b->across_pieces;
+}
 inline bool equal(const ShapeDescription& a, const ShapeDescription& b) {
-  const auto& [name, material, transform, kind, where] = a;
+  const auto& [name, material, transform, shading, interpolation, smoothing, half_distance, kind, where] = a;
   (void)where;
-  return name == b.name && material == b.material && transform == b.transform && equal(kind, b.kind);
+  return name == b.name && material == b.material && transform == b.transform && shading == b.shading &&
+         interpolation == b.interpolation && equal(smoothing, b.smoothing) && half_distance == b.half_distance &&
+         equal(kind, b.kind);
 }
 template <Named T>
 bool equal(const std::vector<T>& a, const std::vector<T>& b);

@@ -28,8 +28,10 @@ TEST(SceneFields, TablesHoldEveryMember) {
     return counter.count;
   };
   EXPECT_EQ(count(ImageDescription{}), 2);
-  EXPECT_EQ(count(RenderSettings{}), 12);
+  EXPECT_EQ(count(RenderSettings{}), 13);
   EXPECT_EQ(count(TessellationSettings{}), 2);
+  EXPECT_EQ(count(FacetSettings{}), 3);
+  EXPECT_EQ(count(Smoothing{}), 3);
   EXPECT_EQ(count(AdaptiveSampling{}), 3);
   EXPECT_EQ(count(CameraDescription{}), 7 - 1) << "without name";
   EXPECT_EQ(count(ConstantBackground{}), 1);
@@ -52,17 +54,17 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(SharpCorner{}), 2);
   EXPECT_EQ(count(InlineMesh{}), 9 - 1) << "PolygonMesh keeps sizes and corners apart";
   EXPECT_EQ(count(PatchesShape{}), 9);
-  EXPECT_EQ(count(SphereShape{}), 2);
+  EXPECT_EQ(count(SphereShape{}), 4);
   EXPECT_EQ(count(PlaneShape{}), 2);
-  EXPECT_EQ(count(DiscShape{}), 3);
-  EXPECT_EQ(count(ConeShape{}), 4);
+  EXPECT_EQ(count(DiscShape{}), 4);
+  EXPECT_EQ(count(ConeShape{}), 6);
   EXPECT_EQ(count(TerrainShape{}), 5);
   EXPECT_EQ(count(SphereFlakeShape{}), 3);
   EXPECT_EQ(count(TreeShape{}), 6);
   EXPECT_EQ(count(InstanceShape{}), 1);
   EXPECT_EQ(count(ScatterShape{}), 12);
   EXPECT_EQ(count(GroupDescription{}), 3 - 2) << "without name and where";
-  EXPECT_EQ(count(ShapeDescription{}), 5 - 2) << "without name and where";
+  EXPECT_EQ(count(ShapeDescription{}), 9 - 2) << "without name and where";
   EXPECT_EQ(count(SceneDescription{}), 12 - 2 + 1) << "without name and folder, with the version";
 }
 

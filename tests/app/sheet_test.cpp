@@ -1,0 +1,85 @@
+// `raytree sheet` from outside: a labelled picture of every scene in four ways, and what it refuses. And the flags that
+// change how facets are shaded.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "renderer/image_file.h"
+#include "tests/app/program.h"
+
+namespace raytree::test {
+namespace {
+
+TEST(Sheet, ShowsEverySceneInFourWaysUnderItsName) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("sheet.png");
+  const ProgramResult result =
+      run_program({"sheet", "cone", "prisms", "-o", path, "--size", "180x60", "--antialias", "none"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "2 scenes")) << result.err;
+  const DecodedImage sheet = read_image_file(path);
+  // Margins of 8 around cells, a line of letters 18 high above each.
+  ASSERT_EQ(sheet.width, 8 + 4 * (180 + 8));
+  ASSERT_EQ(sheet.height, 8 + 2 * (60 + 18 + 8 + 8));
+  const auto region = [&](int left, int top, int width, int height) {
+    std::vector<float> values;
+    for (int y = top; y < top + height; ++y)
+      for (int x = left; x < left + width; ++x) values.push_back(sheet.planes[0][std::size_t(y * sheet.width + x)]);
+    return values;
+  };
+  std::set<std::vector<float>> cells, labels;
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 4; ++column) {
+      const int left = 8 + column * 188, top = 8 + row * 94;
+      const std::vector<float> label = region(left, top, 180, 18);
+      const auto ink = std::count_if(label.begin(), label.end(), [](float v) { return v > 0.9f; });
+      EXPECT_GT(ink, 300) << "letters of two pixels a dot";
+      EXPECT_EQ(std::count_if(label.begin(), label.end(), [](float v) { return v > 0.16f && v < 0.9f; }), 0);
+      labels.insert(label);
+      cells.insert(region(left, top + 26, 180, 60));
+    }
+  // On a cylinder an interpolated normal points along the true radius: phong and limit are one there.
+  EXPECT_GE(cells.size(), 7u);
+  EXPECT_EQ(labels.size(), 8u);
+  run_program({"sheet", "cone", "prisms", "-o", folder.path("again.png"), "--size", "180x60", "--antialias", "none",
+               "--threads", "1"});
+  EXPECT_EQ(file_text(path), file_text(folder.path("again.png")));
+}
+
+TEST(Sheet, RefusesWhatItCannotDo) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path("sheet.png");
+  expect_bad_input({"sheet", "-o", out}, {"no scene"});
+  expect_bad_input({"sheet", "cone"}, {"no output", "-o"});
+  expect_bad_input({"sheet", "cone", "-o", folder.path("sheet.exr")}, {"display-referred", ".png"});
+  expect_bad_input({"sheet", "cone", "-o", out, "--shading", "flat"}, {"--shading"});
+  expect_bad_input({"sheet", "conee", "-o", out}, {"conee", "did you mean cone"});
+  EXPECT_EQ(folder.names(), std::vector<std::string>{});
+}
+
+TEST(ShadingFlags, ChangeThePictureAndAreChecked) {
+  const TemporaryFolder folder;
+  const auto picture = [&](const std::vector<std::string>& flags) {
+    const ProgramResult result = run_program(
+        with({"render", "molecule", "-o", folder.path("p.png"), "--size", "60x40", "--antialias", "none"}, flags));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return file_text(folder.path("p.png"));
+  };
+  const std::string plain = picture({});
+  EXPECT_EQ(picture({"--set", "shapes.bond 1.shading=phong"}).empty(), false);
+  EXPECT_NE(picture({"--shading", "flat"}), plain);
+  EXPECT_NE(picture({"--shading", "gouraud"}), plain);
+  EXPECT_NE(picture({"--shading", "limit"}), plain);
+  EXPECT_NE(picture({"--terminator", "offset"}), plain);
+  expect_bad_input({"render", "molecule", "-o", folder.path("q.png"), "--shading", "gourad"},
+                   {"--shading", "flat, gouraud, phong, limit", "did you mean gouraud"});
+  expect_bad_input({"render", "molecule", "-o", folder.path("q.png"), "--terminator", "hanika"}, {"classic, offset"});
+  expect_bad_input({"render", "molecule", "-o", folder.path("q.png"), "--classic", "--reflections", "clamped"},
+                   {"--classic", "exclude"});
+  const ProgramResult info = run_program({"info", "molecule", "--shading", "gouraud"});
+  EXPECT_TRUE(contains(info.out, "gouraud shading")) << info.out;
+}
+
+}  // namespace
+}  // namespace raytree::test
