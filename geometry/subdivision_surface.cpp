@@ -75,7 +75,7 @@ class SubdivisionSurface final : public ParametricSurface {
 
   void evaluate(std::size_t face, std::span<const Vec2f> parameters, std::span<SurfaceSample> samples) const override {
     // Patch points that are not kept live here between the calls of one thread.
-    thread_local std::vector<float> position_points, texture_points;
+    thread_local std::vector<float> position_points;
     FacePatches<3>::Patch patch;
     positions_->prepare(face, patch, position_points);
     PatchValues values;
@@ -89,15 +89,23 @@ class SubdivisionSurface final : public ParametricSurface {
         sample.normal = unit_float(normal);
       else
         sample.normal = degenerate_normal(face, patch, parameters[i]);
-      sample.texture = Vec2f(0, 0);
       if (patch.surface != nullptr) apply_limit_vertex(face, parameters[i], sample);
     }
-    if (!texture_) return;
+  }
+
+  void evaluate_texture(std::size_t face, std::span<const Vec2f> parameters,
+                        std::span<Vec2f> coordinates) const override {
+    if (!texture_) {
+      std::fill_n(coordinates.begin(), parameters.size(), Vec2f(0, 0));
+      return;
+    }
+    thread_local std::vector<float> texture_points;
     FacePatches<2>::Patch texture;
     texture_->prepare(face, texture, texture_points);
+    PatchValues values;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       FacePatches<2>::evaluate_value(texture, parameters[i], values);
-      samples[i].texture = Vec2f(values.value[0], values.value[1]);
+      coordinates[i] = Vec2f(values.value[0], values.value[1]);
     }
   }
 

@@ -32,8 +32,9 @@ constexpr int kFirstGrid = 2;        ///< cells along a side
 constexpr int kLargestGrid = 16;     ///< of faces that turn out to need many segments
 constexpr int kSegmentsPerCell = 4;  ///< of those: one cell for so many
 constexpr double kLargestRise = 2;   ///< of a rate in one round
-/// Facets of one face that are measured in one round: so many, and one in so many of the rest.
-constexpr std::size_t kMeasuredFacets = 1024, kMeasuredShare = 4;
+/// Facets inside one face that are measured in one round: so many, or one in so many if that is more. Those along its
+/// boundary all are: at semi-sharp creases and extraordinary vertices deviations change most.
+constexpr std::size_t kMeasuredFacets = 96, kMeasuredShare = 8;
 constexpr double kTurnsMuch = 0.5;  ///< cosine of 60 degrees
 constexpr std::size_t kFacesAtOnce = 16;
 
@@ -276,15 +277,22 @@ bool RateFinder::measure(std::size_t face, Scratch& scratch) const {
 
   // All facets, or those at the corners and some in between.
   scratch.facets.clear();
-  const std::size_t count = pattern.facet_count(),
-                    stride = count / std::min(count, std::max(kMeasuredFacets, count / kMeasuredShare));
+  const std::size_t count = pattern.facet_count();
+  const double share = std::max(double(kMeasuredFacets) / double(count), 1.0 / kMeasuredShare);
+  const auto is_chosen = [&](std::size_t f) {
+    // Multiples of the golden ratio are spread evenly, and in step with no rows of the pattern.
+    constexpr std::uint32_t kGoldenRatio = 0x9e3779b9u;
+    return share >= 1 || static_cast<std::uint32_t>(f) * kGoldenRatio < share * 4294967296.0;
+  };
   const auto is_corner = [&](std::uint32_t point) {
     return point < pattern.boundary_count && (point == 0 || scratch.side_of[point] != scratch.side_of[point - 1]);
   };
   for (std::size_t f = 0; f < count; ++f) {
     const std::uint32_t* c = &pattern.facets[3 * f];
     if (has_no_area(c, scratch.points)) continue;
-    if (f % stride == stride / 2 || (stride > 1 && (is_corner(c[0]) || is_corner(c[1]) || is_corner(c[2]))))
+    const int on_boundary =
+        (c[0] < pattern.boundary_count) + (c[1] < pattern.boundary_count) + (c[2] < pattern.boundary_count);
+    if (on_boundary > 1 || is_chosen(f) || is_corner(c[0]) || is_corner(c[1]) || is_corner(c[2]))
       scratch.facets.push_back(static_cast<std::uint32_t>(f));
   }
 
@@ -433,6 +441,13 @@ ViewRates RateFinder::find() {
 
 ViewRates rates_for_view(const ParametricSurface& surface, const TessellationView& view, double tolerance) {
   return RateFinder(surface, view, tolerance).find();
+}
+
+ViewRates rates_for_distance(const ParametricSurface& surface, double distance) {
+  constexpr double kPixels = 0.25;
+  TessellationView view;  // from everywhere
+  view.pixel = distance / kPixels;
+  return rates_for_view(surface, view, kPixels);
 }
 
 }  // namespace raytree

@@ -11,6 +11,7 @@
 
 #include "geometry/mesh_file.h"
 #include "tests/geometry/subdivision_cages.h"
+#include "tests/geometry/surface_samples.h"
 #include "tests/test_data.h"
 
 namespace raytree {
@@ -27,10 +28,7 @@ std::unique_ptr<ParametricSurface> surface_of(const PolygonMesh& mesh, const Sub
 }
 
 SurfaceSample sample_at(const ParametricSurface& surface, std::size_t face, float u, float v) {
-  const Vec2f at(u, v);
-  SurfaceSample sample;
-  surface.evaluate(face, {&at, 1}, {&sample, 1});
-  return sample;
+  return test::sample_at(surface, face, Vec2d(double(u), double(v)));
 }
 
 double box_size(const PolygonMesh& mesh) { return bounds(mesh).size().length(); }
@@ -242,11 +240,10 @@ TEST(SubdivisionSurface, TextureCoordinatesFollowTheirRule) {
     rules.face_varying = rule;
     const auto surface = surface_of(cube, rules);
     EXPECT_TRUE(surface->has_texture());
-    const SurfaceSample sample = sample_at(*surface, 1, 0.25f, 0.5f);
     if (rule == FaceVaryingRule::all) {
-      EXPECT_LE((sample.texture - Vec2f(0.25f, 0.5f)).length(), 1e-6f);
+      EXPECT_LE((test::texture_at(*surface, 1, {0.25f, 0.5f}) - Vec2f(0.25f, 0.5f)).length(), 1e-6f);
     }
-    EXPECT_LE((sample_at(*surface, 1, 1, 1).texture - Vec2f(1, 1)).length(), 1e-6f);
+    EXPECT_LE((test::texture_at(*surface, 1, {1, 1}) - Vec2f(1, 1)).length(), 1e-6f);
   }
   EXPECT_FALSE(surface_of(cube_cage())->has_texture());
 }
