@@ -283,7 +283,9 @@ bool RateFinder::measure(std::size_t face, Scratch& scratch) const {
   // All facets, or those at the corners and some in between.
   scratch.facets.clear();
   const std::size_t count = pattern.facet_count();
-  const double share = std::max(double(kMeasuredFacets) / double(count), 1.0 / kMeasuredShare);
+  // The subfaces of an n-gon meet inside it, and less smoothly than they are: there all count.
+  const double share =
+      domain == FaceDomain::quad_subfaces ? 1 : std::max(double(kMeasuredFacets) / double(count), 1.0 / kMeasuredShare);
   const auto is_chosen = [&](std::size_t f) {
     // Multiples of the golden ratio are spread evenly, and in step with no rows of the pattern.
     constexpr std::uint32_t kGoldenRatio = 0x9e3779b9u;
