@@ -175,30 +175,4 @@ FacetCounts count_facets(FaceDomain domain, std::span<const std::uint16_t> rates
   });
 }
 
-std::size_t FacetPatternSet::KeyHash::operator()(const Key& key) const {
-  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, a word at a time
-  for (const std::uint16_t value : key) hash = (hash ^ value) * 0x100000001b3u;
-  return static_cast<std::size_t>(hash ^ (hash >> 32));
-}
-
-std::uint32_t FacetPatternSet::find(FaceDomain domain, std::span<const std::uint16_t> rates) {
-  key_.assign(1, static_cast<std::uint16_t>(domain));
-  key_.insert(key_.end(), rates.begin(), rates.end());
-  if (key_ == last_key_) return last_;
-  const auto found = numbers_.find(key_);
-  if (found != numbers_.end()) {
-    last_ = found->second;
-  } else if (bytes_ < most_bytes_) {
-    patterns_.push_back(make_facet_pattern(domain, rates));
-    const FacetPattern& made = patterns_.back();
-    bytes_ += made.parameters.size() * sizeof(Vec2f) + made.facets.size() * sizeof(std::uint32_t);
-    last_ = static_cast<std::uint32_t>(patterns_.size() - 1);
-    numbers_.emplace(key_, last_);
-  } else {
-    last_ = kNotKept;
-  }
-  last_key_ = key_;
-  return last_;
-}
-
 }  // namespace raytree

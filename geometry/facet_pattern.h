@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "geometry/parametric_surface.h"
@@ -49,32 +48,5 @@ Vec2d subface_corner(std::size_t sides, std::size_t i);
 /// subfaces of an n-gon the way between its corners is one over the n-gon laid out flat.
 void parameters_in_facet(FaceDomain domain, std::size_t sides, const std::array<Vec2f, 3>& corners,
                          std::span<const std::array<double, 3>> weights, Vec2f* parameters);
-
-/// Patterns made once for all faces with the same rates.
-class FacetPatternSet {
- public:
-  static constexpr std::uint32_t kNotKept = 0xffffffffu;
-
-  /// Keeps no further pattern once those kept take so many bytes.
-  explicit FacetPatternSet(std::size_t most_bytes = std::size_t(256) << 20) : most_bytes_(most_bytes) {}
-
-  /// The number of that pattern, made if it is new; kNotKept when there is no room.
-  std::uint32_t find(FaceDomain domain, std::span<const std::uint16_t> rates);
-
-  const FacetPattern& operator[](std::uint32_t number) const { return patterns_[number]; }
-  std::size_t size() const { return patterns_.size(); }
-
- private:
-  using Key = std::vector<std::uint16_t>;
-  struct KeyHash {
-    std::size_t operator()(const Key& key) const;
-  };
-
-  std::size_t most_bytes_, bytes_ = 0;
-  Key key_, last_key_;
-  std::uint32_t last_ = kNotKept;
-  std::unordered_map<Key, std::uint32_t, KeyHash> numbers_;
-  std::vector<FacetPattern> patterns_;
-};
 
 }  // namespace raytree

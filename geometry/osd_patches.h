@@ -1,5 +1,6 @@
 // The limit patches of all faces for one kind of value: positions (three floats) or texture coordinates (two). Regular
-// patches are evaluated here, as uniform bicubic B-splines; all others by Bfr. Included by subdivision_surface.cpp.
+// patches are evaluated here, as uniform bicubic B-splines, also at boundaries and infinitely sharp creases; all others
+// by Bfr. Included by subdivision_surface.cpp.
 #pragma once
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
@@ -11,9 +12,11 @@
 #include <cmath>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <vector>
 
+#include "geometry/bicubic_spline.h"
 #include "geometry/osd_topology.h"
 #include "geometry/vec.h"
 
@@ -23,18 +26,6 @@ namespace raytree {
 using PatchCache = osd::Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::shared_lock<std::shared_mutex>,
                                                          std::unique_lock<std::shared_mutex>>;
 using PatchFactory = osd::Bfr::RefinerSurfaceFactory<PatchCache>;
-
-/// The four weights of a uniform cubic B-spline at t in [0, 1], and of its derivatives.
-struct CubicWeights {
-  explicit CubicWeights(float t) {
-    const float s = 1 - t, sixth = 1.0f / 6;
-    value = {s * s * s * sixth, (3 * t * t * (t - 2) + 4) * sixth, (3 * s * s * (s - 2) + 4) * sixth,
-             t * t * t * sixth};
-    first = {-0.5f * s * s, 0.5f * t * (3 * t - 4), 0.5f * s * (4 - 3 * s), 0.5f * t * t};
-    second = {s, 3 * t - 2, 3 * s - 2, t};
-  }
-  std::array<float, 4> value, first, second;
-};
 
 /// Values at one parameter; each padded to four floats.
 struct PatchValues {
@@ -84,10 +75,10 @@ class FacePatches {
 
   /// One face made ready: its own control points in a row.
   struct Patch {
-    const Surface* surface = nullptr;  ///< null: regular
-    const float* points = nullptr;     ///< of the surface, [..][kWidth]
-    float scale = 0;                   ///< largest distance along an axis from the first control point to another one
-    alignas(16) std::array<float, 64> control;  ///< regular: [16][4]
+    const Surface* surface = nullptr;    ///< null: regular
+    const float* points = nullptr;       ///< of the surface, [..][kWidth]
+    float scale = 0;                     ///< largest distance along an axis from the first control point to another one
+    alignas(16) BicubicControl control;  ///< regular
   };
 
   /// `scratch` holds points that are not kept; it must outlive the patch. The face must have a surface.
@@ -96,11 +87,12 @@ class FacePatches {
     const std::uint16_t slot = face_slots_[face];
     if (slot < kGeneral) {
       patch.surface = nullptr;
-      const std::array<int, 16>& indices = chunk.regular[slot];
+      const RegularPatch& regular = chunk.regular[slot];
       for (std::size_t i = 0; i < 16; ++i) {
-        const float* const value = &values_[static_cast<std::size_t>(indices[i]) * kWidth];
+        const float* const value = &values_[static_cast<std::size_t>(regular.indices[i]) * kWidth];
         for (std::size_t k = 0; k < 4; ++k) patch.control[4 * i + k] = k < kWidth ? value[k] : 0.0f;
       }
+      if (regular.sides != 0) end_at_sides(patch.control, regular.sides);
       patch.scale = extent(patch.control.data(), 16, 4);
       return;
     }
@@ -122,7 +114,7 @@ class FacePatches {
       return;
     }
     const CubicWeights u(at.x), v(at.y);
-    out.value = sum(patch, u.value, v.value);
+    out.value = weighted_sum(patch.control, u.value, v.value);
   }
 
   /// Value and first derivatives.
@@ -158,38 +150,66 @@ class FacePatches {
     }
     const CubicWeights u(at.x), v(at.y);
     evaluate_first(patch, at, out);
-    out.duu = sum(patch, u.second, v.value);
-    out.duv = sum(patch, u.first, v.first);
-    out.dvv = sum(patch, u.value, v.second);
+    out.duu = weighted_sum(patch.control, u.second, v.value);
+    out.duv = weighted_sum(patch.control, u.first, v.first);
+    out.dvv = weighted_sum(patch.control, u.value, v.second);
   }
 
  private:
   static constexpr std::size_t kChunk = 1024;                        // faces that one task prepares
   static constexpr std::uint16_t kNone = 0xffff, kGeneral = kChunk;  // slots below kGeneral are regular
 
+  struct RegularPatch {
+    std::array<int, 16> indices;
+    std::uint8_t sides = 0;  ///< for end_at_sides()
+  };
+
   struct Chunk {
-    std::vector<std::array<int, 16>> regular;
+    std::vector<RegularPatch> regular;
     std::vector<Surface> general;
     std::vector<std::size_t> first_points;
     std::vector<float> points;
     bool keeps_points = false;
 
     std::uint16_t add(const Surface& surface) {
-      // Sixteen control points that all differ: no boundary, where Bfr fills gaps with points that are there already.
-      if (surface.IsRegular() && surface.GetNumControlPoints() == 16) {
-        std::array<int, 16> indices, sorted;
-        surface.GetControlPointIndices(indices.data());
-        sorted = indices;
-        std::sort(sorted.begin(), sorted.end());
-        if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) {
-          regular.push_back(indices);
-          return static_cast<std::uint16_t>(regular.size() - 1);
-        }
+      if (const std::optional<std::uint8_t> sides = bicubic_sides(surface)) {
+        RegularPatch& patch = regular.emplace_back();
+        surface.GetControlPointIndices(patch.indices.data());
+        patch.sides = *sides;
+        return static_cast<std::uint16_t>(regular.size() - 1);
       }
       general.push_back(surface);
       return static_cast<std::uint16_t>(kGeneral + general.size() - 1);
     }
   };
+
+  /// For which end_at_sides() makes the surface a bicubic B-spline; nothing: it is not one. Bfr does not say, so one
+  /// point over control points without any pattern is compared with what each set of sides makes of them.
+  static std::optional<std::uint8_t> bicubic_sides(const Surface& surface) {
+    if (!surface.IsRegular() || surface.GetNumControlPoints() != 16) return std::nullopt;
+    static constexpr float kAt[2] = {0.3f, 0.4f};
+    struct Trial {
+      std::array<float, 16> points;
+      std::array<float, kSideSets> expected;
+      Trial() {
+        for (std::size_t i = 0; i < 16; ++i) points[i] = static_cast<float>((4 * i * i + 23 * i) % 31);
+        for (std::size_t sides = 0; sides < kSideSets; ++sides) {
+          BicubicControl control{};
+          for (std::size_t i = 0; i < 16; ++i) control[4 * i] = points[i];
+          end_at_sides(control, static_cast<std::uint8_t>(sides));
+          expected[sides] = weighted_sum(control, CubicWeights(kAt[0]).value, CubicWeights(kAt[1]).value)[0];
+        }
+      }
+    };
+    static const Trial trial;
+    float found = 0;
+    surface.Evaluate(kAt, trial.points.data(), 1, &found);
+    for (std::size_t sides = 0; sides < kSideSets; ++sides)
+      if (std::abs(found - trial.expected[sides]) < kSame) return static_cast<std::uint8_t>(sides);
+    return std::nullopt;
+  }
+  /// Roundings of sums of 16 numbers up to 31 differ by some 1e-5, those of two sets of sides by more than 0.1.
+  static constexpr float kSame = 1e-3f;
 
   void prepare_points(const Surface& surface, float* points) const {
     surface.PreparePatchPoints(values_.data(), kWidth, points, kWidth);
@@ -199,16 +219,6 @@ class FacePatches {
     float result = 0;
     for (std::size_t i = 1; i < count; ++i)
       for (std::size_t k = 0; k < kWidth; ++k) result = std::max(result, std::abs(points[i * stride + k] - points[k]));
-    return result;
-  }
-
-  static std::array<float, 4> sum(const Patch& patch, const std::array<float, 4>& u, const std::array<float, 4>& v) {
-    std::array<float, 4> result{};
-    for (std::size_t row = 0; row < 4; ++row) {
-      const float* const c = &patch.control[16 * row];
-      for (std::size_t k = 0; k < 4; ++k)
-        result[k] += v[row] * (u[0] * c[k] + u[1] * c[4 + k] + u[2] * c[8 + k] + u[3] * c[12 + k]);
-    }
     return result;
   }
 

@@ -35,7 +35,6 @@ struct SurfaceSample {
   Vec3f position;  ///< relative to origin()
   Vec3f normal;    ///< unit, outward; of the limit surface; never zero, also where du x dv vanishes
   Vec3f du, dv;    ///< first derivatives by the face's own parameters
-  Vec2f texture;   ///< (0, 0) without texture coordinates
 };
 
 class ParametricSurface {
@@ -57,6 +56,10 @@ class ParametricSurface {
   /// their common edge: who wants shared points evaluates them once.
   virtual void evaluate(std::size_t face, std::span<const Vec2f> parameters,
                         std::span<SurfaceSample> samples) const = 0;
+
+  /// The same for texture coordinates, (0, 0) without; coordinates: [parameters.size()].
+  virtual void evaluate_texture(std::size_t face, std::span<const Vec2f> parameters,
+                                std::span<Vec2f> coordinates) const = 0;
 
   /// The cage's polygon or what else the user would call this face; for messages and for material runs.
   virtual std::uint32_t source_face(std::size_t face) const = 0;

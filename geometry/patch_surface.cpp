@@ -325,10 +325,15 @@ void PatchSurface::evaluate(std::size_t face, std::span<const Vec2f> parameters,
           out.normal = normal == Vec3d(0, 0, 0) ? mean_normal(face) : Vec3f(normal);
           out.du = Vec3f(at.du);
           out.dv = Vec3f(at.dv);
-          out.texture = options_.flip ? Vec2f(parameters[i].y, parameters[i].x) : parameters[i];
         }
       },
       patches_[face]);
+}
+
+void PatchSurface::evaluate_texture(std::size_t, std::span<const Vec2f> parameters,
+                                    std::span<Vec2f> coordinates) const {
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    coordinates[i] = options_.flip ? Vec2f(parameters[i].y, parameters[i].x) : parameters[i];
 }
 
 }  // namespace raytree

@@ -47,6 +47,8 @@ class PatchSurface final : public ParametricSurface {
   FaceDomain domain(std::size_t) const override { return FaceDomain::quad; }
   std::span<const FaceEdge> sides(std::size_t face) const override { return sides_[face]; }
   void evaluate(std::size_t face, std::span<const Vec2f> parameters, std::span<SurfaceSample> samples) const override;
+  void evaluate_texture(std::size_t face, std::span<const Vec2f> parameters,
+                        std::span<Vec2f> coordinates) const override;
   std::uint32_t source_face(std::size_t face) const override { return static_cast<std::uint32_t>(face); }
 
  private:

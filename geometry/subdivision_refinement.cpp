@@ -31,12 +31,16 @@ Buffer<Narrow> refined_values(const Buffer<Narrow>& source, int levels, const In
 
 class Refinement {
  public:
-  Refinement(const PolygonMesh& mesh, const SubdivisionRules& rules, int levels, bool with_edges,
+  Refinement(const PolygonMesh& mesh, const SubdivisionRules& rules, int levels, RefinedPoints points,
              const SourceLocation& where, Warnings& warnings)
-      : mesh_(mesh), rules_(rules), where_(where), refiner_(make_refiner(mesh, rules, where, warnings)) {
+      : mesh_(mesh),
+        rules_(rules),
+        points_(points),
+        where_(where),
+        refiner_(make_refiner(mesh, rules, where, warnings)) {
     if (levels > 0) {
       osd::Far::TopologyRefiner::UniformOptions options(levels);
-      options.fullTopologyInLastLevel = with_edges;
+      options.fullTopologyInLastLevel = points == RefinedPoints::limit || keeps_rules();
       refiner_->RefineUniform(options);
     }
     refine_values(levels);
@@ -44,12 +48,15 @@ class Refinement {
     find_sources(levels);
   }
 
+  /// Only after RefinedPoints::limit.
   void move_to_limit();
 
   /// The faces that have a surface, in the order of the cage's faces.
   PolygonMesh result() &&;
 
  private:
+  /// Control points with tags are a cage with tags, refined.
+  bool keeps_rules() const { return points_ == RefinedPoints::control && mesh_.subdivision; }
   const Level& last_level() const { return refiner_->GetLevel(refiner_->GetMaxLevel()); }
 
   void refine_values(int levels) {
@@ -124,6 +131,7 @@ class Refinement {
 
   const PolygonMesh& mesh_;
   const SubdivisionRules& rules_;
+  const RefinedPoints points_;
   const SourceLocation& where_;
   std::unique_ptr<osd::Far::TopologyRefiner> refiner_;
   PolygonMesh cage_;                    // refined, with all faces
@@ -142,19 +150,21 @@ void Refinement::move_to_limit() {
   std::fill(normals.begin(), normals.end(), Vec3f(0, 1, 0));
   std::vector<Vec2f> parameters;
   std::vector<SurfaceSample> samples;
+  std::vector<Vec2f> coordinates;
   std::size_t first = 0;
   for (std::size_t face = 0; face < sources_.size(); ++face) {
     const std::size_t size = cage_.all_triangles() ? 3 : cage_.face_sizes[face];
     const std::span<const FaceEdge> sides = surface->sides(face);
     if (!sides.empty()) {
       const osd::Bfr::Parameterization domain(refiner_->GetSchemeType(), static_cast<int>(size));
-      parameters.resize(size), samples.resize(size);
+      parameters.resize(size), samples.resize(size), coordinates.resize(size);
       for (std::size_t i = 0; i < size; ++i) domain.GetVertexCoord(static_cast<int>(i), &parameters[i].x);
       surface->evaluate(face, parameters, samples);
+      if (!texture.empty()) surface->evaluate_texture(face, parameters, coordinates);
       for (std::size_t i = 0; i < size; ++i) {
         const std::uint32_t vertex = cage_.corners[first + i];
         positions[vertex] = samples[i].position;
-        if (!texture.empty()) texture[texture_corners[first + i]] = samples[i].texture;
+        if (!texture.empty()) texture[texture_corners[first + i]] = coordinates[i];
         if (!sides[i].sharp_vertex) {
           normals[vertex] = samples[i].normal;
           continue;
@@ -172,6 +182,10 @@ void Refinement::move_to_limit() {
 }
 
 PolygonMesh Refinement::result() && {
+  if (keeps_rules()) {
+    cage_.subdivision = rules_left();
+    cage_.subdivision->holes.clear();  // they are left out
+  }
   std::vector<std::size_t> first_corners(sources_.size() + 1, 0);
   std::vector<std::uint32_t> order;
   for (std::size_t face = 0; face < sources_.size(); ++face) {
@@ -231,7 +245,7 @@ PolygonMesh refine_uniformly(const PolygonMesh& mesh, const SubdivisionRules& ru
                              const SourceLocation& where, Warnings& warnings) {
   check_cage(mesh, rules, where);
   check_size(mesh, rules, levels, where);
-  Refinement refinement(mesh, rules, levels, points == RefinedPoints::limit, where, warnings);
+  Refinement refinement(mesh, rules, levels, points, where, warnings);
   if (points == RefinedPoints::limit) refinement.move_to_limit();
   return std::move(refinement).result();
 }

@@ -1,5 +1,6 @@
 #include "geometry/subdivision_surface.h"
 
+#include <fmt/format.h>
 #include <opensubdiv/far/primvarRefiner.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -26,20 +27,37 @@ struct LimitVertex {
   Vec3f position, normal;
 };
 
+using Level = osd::Far::TopologyLevel;
+
+/// Inside the surface, with two faces alone: they share it whole around.
+bool is_fold(const Level& level, int vertex) {
+  return level.GetVertexFaces(vertex).size() == 2 && !level.IsVertexBoundary(vertex) &&
+         !level.IsVertexNonManifold(vertex);
+}
+
+bool has_fold(const Level& level) {
+  for (int vertex = 0; vertex < level.GetNumVertices(); ++vertex)
+    if (is_fold(level, vertex)) return true;
+  return false;
+}
+
 class SubdivisionSurface final : public ParametricSurface {
  public:
-  SubdivisionSurface(const PolygonMesh& mesh, const SubdivisionRules& rules, const osd::Far::TopologyRefiner& refiner)
+  SubdivisionSurface(const PolygonMesh& mesh, const SubdivisionRules& rules, const osd::Far::TopologyRefiner& refiner,
+                     std::size_t point_budget)
       : origin_(mesh.origin), scheme_(refiner.GetSchemeType()) {
     const Level& level = refiner.GetLevel(0);
     PatchFactory::Options options;
     options.SetApproxLevelSmooth(kSmoothApproximationLevel).SetApproxLevelSharp(kSharpApproximationLevel);
+    // Before 3.7 a patch beside a fold may be shared with a face that it does not fit (its pull request 1353).
+    if (OPENSUBDIV_VERSION_NUMBER < 30700 && has_fold(level)) options.EnableCaching(false);
     const PatchFactory factory(refiner, options);
     std::vector<float> values(&mesh.positions.data()->x, &mesh.positions.data()->x + 3 * mesh.positions.size());
-    positions_.emplace(factory, mesh.face_count(), std::move(values), -1, kPatchPointBudget);
+    positions_.emplace(factory, mesh.face_count(), std::move(values), -1, point_budget);
     if (!mesh.texture_coordinates.empty()) {
       values.assign(&mesh.texture_coordinates.data()->x,
                     &mesh.texture_coordinates.data()->x + 2 * mesh.texture_coordinates.size());
-      texture_.emplace(factory, mesh.face_count(), std::move(values), 0, kPatchPointBudget);
+      texture_.emplace(factory, mesh.face_count(), std::move(values), 0, point_budget);
     }
     vertex_count_ = mesh.positions.size();
     edge_count_ = static_cast<std::size_t>(level.GetNumEdges());
@@ -75,7 +93,7 @@ class SubdivisionSurface final : public ParametricSurface {
 
   void evaluate(std::size_t face, std::span<const Vec2f> parameters, std::span<SurfaceSample> samples) const override {
     // Patch points that are not kept live here between the calls of one thread.
-    thread_local std::vector<float> position_points, texture_points;
+    thread_local std::vector<float> position_points;
     FacePatches<3>::Patch patch;
     positions_->prepare(face, patch, position_points);
     PatchValues values;
@@ -89,21 +107,27 @@ class SubdivisionSurface final : public ParametricSurface {
         sample.normal = unit_float(normal);
       else
         sample.normal = degenerate_normal(face, patch, parameters[i]);
-      sample.texture = Vec2f(0, 0);
       if (patch.surface != nullptr) apply_limit_vertex(face, parameters[i], sample);
     }
-    if (!texture_) return;
+  }
+
+  void evaluate_texture(std::size_t face, std::span<const Vec2f> parameters,
+                        std::span<Vec2f> coordinates) const override {
+    if (!texture_) {
+      std::fill_n(coordinates.begin(), parameters.size(), Vec2f(0, 0));
+      return;
+    }
+    thread_local std::vector<float> texture_points;
     FacePatches<2>::Patch texture;
     texture_->prepare(face, texture, texture_points);
+    PatchValues values;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       FacePatches<2>::evaluate_value(texture, parameters[i], values);
-      samples[i].texture = Vec2f(values.value[0], values.value[1]);
+      coordinates[i] = Vec2f(values.value[0], values.value[1]);
     }
   }
 
  private:
-  using Level = osd::Far::TopologyLevel;
-
   osd::Bfr::Parameterization parameterization(std::size_t face) const {
     return {scheme_, static_cast<int>(all_sides(face).size())};
   }
@@ -267,40 +291,45 @@ class SubdivisionSurface final : public ParametricSurface {
   std::vector<LimitVertex> limit_vertices_;
 };
 
-/// Refuses faces for which OpenSubdiv 3.5's Bfr reads creases that it never wrote, and crashes: with a corner that two
-/// faces alone share whole around (interior, valence 2) and a crease at some corner.
-void refuse_creased_folds(const osd::Far::TopologyLevel& level, const SourceLocation& where) {
-  const auto is_fold = [&](int vertex) {
-    return level.GetVertexFaces(vertex).size() == 2 && !level.IsVertexBoundary(vertex) &&
-           !level.IsVertexNonManifold(vertex);
+/// Refuses faces on which OpenSubdiv's Bfr reads or writes memory that is not its own: those with a fold and, up
+/// to 3.5, a crease at some corner; in 3.6 those whose fold ends one infinitely sharp crease (its pull requests 1301
+/// and 1336).
+void refuse_creased_folds(const Level& level, const SourceLocation& where) {
+  const auto counts = [&](int edge) {
+    return level.GetEdgeSharpness(edge) > 0 && !level.IsEdgeBoundary(edge) && !level.IsEdgeNonManifold(edge);
   };
-  const auto is_creased = [&](int vertex) {
-    for (const int edge : level.GetVertexEdges(vertex))
-      if (level.GetEdgeSharpness(edge) > 0 && !level.IsEdgeBoundary(edge) && !level.IsEdgeNonManifold(edge))
-        return true;
-    return false;
+  const auto refuse = [&](int face, int fold, int creased) {
+    throw Error(
+        ErrorKind::bad_input, where,
+        fmt::format("subdivision cage: face {} (counted from 0) has vertex {}, which two faces alone share whole "
+                    "around, and a crease at vertex {}: OpenSubdiv {}.{} has no limit surface there; leave the "
+                    "crease out, or split one of the two faces at that vertex",
+                    face, fold, creased, OPENSUBDIV_VERSION_MAJOR, OPENSUBDIV_VERSION_MINOR));
   };
   for (int vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-    if (!is_fold(vertex)) continue;
+    if (!is_fold(level, vertex)) continue;
+    if constexpr (OPENSUBDIV_VERSION_NUMBER >= 30600) {
+      int sharp = 0;
+      for (const int edge : level.GetVertexEdges(vertex)) sharp += counts(edge) && level.IsEdgeInfSharp(edge);
+      if (OPENSUBDIV_VERSION_NUMBER < 30700 && sharp == 1) refuse(level.GetVertexFaces(vertex)[0], vertex, vertex);
+      continue;
+    }
     for (const int face : level.GetVertexFaces(vertex))
       for (const int corner : level.GetFaceVertices(face))
-        if (is_creased(corner))
-          throw Error(ErrorKind::bad_input, where,
-                      "subdivision cage: face " + std::to_string(face) + " (counted from 0) has vertex " +
-                          std::to_string(vertex) +
-                          ", which two faces alone share whole around, and a crease at vertex " +
-                          std::to_string(corner) + ": OpenSubdiv has no limit surface there");
+        for (const int edge : level.GetVertexEdges(corner))
+          if (counts(edge)) refuse(face, vertex, corner);
   }
 }
 
 }  // namespace
 
 std::unique_ptr<ParametricSurface> make_subdivision_surface(const PolygonMesh& mesh, const SubdivisionRules& rules,
-                                                            const SourceLocation& where, Warnings& warnings) {
+                                                            const SourceLocation& where, Warnings& warnings,
+                                                            std::size_t point_budget) {
   check_cage(mesh, rules, where);
   const std::unique_ptr<osd::Far::TopologyRefiner> refiner = make_refiner(mesh, rules, where, warnings);
   refuse_creased_folds(refiner->GetLevel(0), where);
-  return std::make_unique<SubdivisionSurface>(mesh, rules, *refiner);
+  return std::make_unique<SubdivisionSurface>(mesh, rules, *refiner, point_budget);
 }
 
 }  // namespace raytree

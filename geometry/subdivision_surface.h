@@ -26,8 +26,9 @@ inline constexpr std::size_t kPatchPointBudget = std::size_t(512) << 20;  // byt
 /// vanish, the normal is that of the first-order expansion into the face (Pu + du Puu + dv Puv) x (Pv + du Puv + dv
 /// Pvv); where that vanishes too, of the nearest point toward the face's middle that has one, else the polygon's.
 /// Runs on the task arena's threads; the result does not depend on their number. Throws Error (bad_input) at `where`
-/// as check_cage() does.
+/// as check_cage() does. Nor does the result depend on the budget.
 std::unique_ptr<ParametricSurface> make_subdivision_surface(const PolygonMesh& mesh, const SubdivisionRules& rules,
-                                                            const SourceLocation& where, Warnings& warnings);
+                                                            const SourceLocation& where, Warnings& warnings,
+                                                            std::size_t point_budget = kPatchPointBudget);
 
 }  // namespace raytree

@@ -26,6 +26,8 @@ struct TessellationRates {
 void rates_of_face(const ParametricSurface& surface, const TessellationRates& rates, std::size_t face,
                    std::vector<std::uint16_t>& face_rates);
 
+bool has_collapsed_side(std::span<const FaceEdge> sides);
+
 /// Numbers for the points of a face's boundary, equal where two are one point: along collapsed sides, and where a face
 /// meets itself. points: [boundary points of its pattern]. Empty when no side is collapsed: no facet is without area.
 void identify_boundary(std::span<const FaceEdge> sides, std::span<const std::uint16_t> rates,

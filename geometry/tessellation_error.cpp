@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "geometry/facet_pattern.h"
+#include "geometry/facet_pattern_set.h"
 
 namespace raytree {
 namespace {
@@ -57,11 +57,6 @@ FacetDeviation measure(const ParametricSurface& surface, std::size_t face, const
   return largest;
 }
 
-bool has_collapsed_side(const ParametricSurface& surface, std::size_t face) {
-  const std::span<const FaceEdge> sides = surface.sides(face);
-  return std::any_of(sides.begin(), sides.end(), [](const FaceEdge& side) { return side.collapsed; });
-}
-
 std::vector<std::uint32_t> facets_with_area(const ParametricSurface& surface, std::size_t face,
                                             const std::vector<std::uint16_t>& rates, const FacetPattern& pattern) {
   std::vector<std::uint64_t> points;
@@ -83,23 +78,19 @@ FacetDeviation larger(FacetDeviation a, const FacetDeviation& b) {
 TessellationError measure_tessellation(const ParametricSurface& surface, const TessellationRates& rates,
                                        const TriangleMesh& mesh, const TessellationView& view) {
   TessellationError error;
-  FacetPatternSet patterns;
+  const FacetPatternSet patterns(surface, rates);
   std::vector<std::size_t> first(surface.face_count() + 1, 0);
-  std::vector<std::uint32_t> numbers(surface.face_count(), FacetPatternSet::kNotKept);
   std::vector<std::uint16_t> face_rates;
   for (std::size_t face = 0; face < surface.face_count(); ++face) {
     first[face + 1] = first[face];
     if (surface.sides(face).empty()) continue;
     ++error.faces;
-    rates_of_face(surface, rates, face, face_rates);
-    numbers[face] = patterns.find(surface.domain(face), face_rates);
-    if (has_collapsed_side(surface, face)) {
+    if (has_collapsed_side(surface.sides(face))) {
+      rates_of_face(surface, rates, face, face_rates);
       const FacetPattern pattern = make_facet_pattern(surface.domain(face), face_rates);
       first[face + 1] += facets_with_area(surface, face, face_rates, pattern).size() / 3;
     } else {
-      first[face + 1] += numbers[face] != FacetPatternSet::kNotKept
-                             ? patterns[numbers[face]].facet_count()
-                             : count_facets(surface.domain(face), face_rates).facets;
+      first[face + 1] += patterns.counts(face).facets;
     }
   }
   error.triangles = first.back();
@@ -113,13 +104,15 @@ TessellationError measure_tessellation(const ParametricSurface& surface, const T
           if (surface.sides(face).empty()) continue;
           rates_of_face(surface, rates, face, own_rates);
           FacetPattern own;
-          if (numbers[face] == FacetPatternSet::kNotKept) own = make_facet_pattern(surface.domain(face), own_rates);
+          const FacetPattern* const kept = patterns.kept(face);
+          if (kept == nullptr) own = make_facet_pattern(surface.domain(face), own_rates);
           std::vector<std::uint8_t> hard;
           find_hard_pieces(surface.sides(face), own_rates, hard);
-          const FacetPattern& pattern = numbers[face] == FacetPatternSet::kNotKept ? own : patterns[numbers[face]];
+          const FacetPattern& pattern = kept == nullptr ? own : *kept;
           std::vector<std::uint32_t> with_area;
-          if (has_collapsed_side(surface, face)) with_area = facets_with_area(surface, face, own_rates, pattern);
-          const std::vector<std::uint32_t>& corners = has_collapsed_side(surface, face) ? with_area : pattern.facets;
+          if (has_collapsed_side(surface.sides(face))) with_area = facets_with_area(surface, face, own_rates, pattern);
+          const std::vector<std::uint32_t>& corners =
+              has_collapsed_side(surface.sides(face)) ? with_area : pattern.facets;
           largest.include(tbb::parallel_reduce(
               Range(0, corners.size() / 3, kFacetsAtOnce), FacetDeviation(),
               [&](const Range& facets, FacetDeviation so_far) {

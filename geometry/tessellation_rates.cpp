@@ -22,18 +22,20 @@ constexpr double kAim = 0.75;
 /// A face is good where samples find at most this share of the tolerances; where they find more, rates rise until it is
 /// kAim of them.
 constexpr double kGoodShare = 0.85;
-/// Facets all of whose edges look shorter than this, in pixels, are not cut for the sake of their normals: near
-/// extraordinary vertices and semi-sharp creases these converge so slowly that whole faces would become millions of
-/// triangles for the shade of a few pixels.
-constexpr double kShortestCutForShading = 6;
+/// Facets all of whose edges look shorter than this, in pixels, are not cut for the sake of their normals, nor faces in
+/// more than so many times the segments that distance alone asks for: near extraordinary vertices and semi-sharp
+/// creases normals converge so slowly that whole faces would become millions of triangles for the shade of a few
+/// pixels.
+constexpr double kShortestCutForShading = 6, kMostForShading = 1.5;
 /// Normals are off most elsewhere than at the middles of edges and facets, where they are sampled.
 constexpr double kShadingBetweenSamples = 1.5;
 constexpr int kFirstGrid = 2;        ///< cells along a side
 constexpr int kLargestGrid = 16;     ///< of faces that turn out to need many segments
 constexpr int kSegmentsPerCell = 4;  ///< of those: one cell for so many
 constexpr double kLargestRise = 2;   ///< of a rate in one round
-/// Facets of one face that are measured in one round: so many, and one in so many of the rest.
-constexpr std::size_t kMeasuredFacets = 1024, kMeasuredShare = 4;
+/// Facets inside one face that are measured in one round: so many, or one in so many if that is more. Those along its
+/// boundary all are: at semi-sharp creases and extraordinary vertices deviations change most.
+constexpr std::size_t kMeasuredFacets = 96, kMeasuredShare = 8;
 constexpr double kTurnsMuch = 0.5;  ///< cosine of 60 degrees
 constexpr std::size_t kFacesAtOnce = 16;
 
@@ -97,6 +99,7 @@ class RateFinder {
   bool measure(std::size_t face, Scratch& scratch) const;
   void take(std::size_t face, const Demand& demand);
   void settle_inner(std::size_t face);
+  void limit_shading();
 
   /// What of the displacement `d` takes the surface away from its facets: what is along the surface does not, unless
   /// the surface ends there, at a hard edge that runs along `edge` (zero: there is none).
@@ -124,6 +127,9 @@ class RateFinder {
   Vec3d origin_;
   Buffer<std::uint32_t> edges_;
   Buffer<std::array<std::uint32_t, 2>> inner_;
+  /// Rates that normals alone may ask for.
+  Buffer<double> shading_edges_;
+  Buffer<std::array<double, 2>> shading_inner_;
   Buffer<std::uint8_t> pending_;  ///< to be measured in the next round
   Buffer<std::uint8_t> failed_;   ///< when it was last measured
 };
@@ -276,15 +282,24 @@ bool RateFinder::measure(std::size_t face, Scratch& scratch) const {
 
   // All facets, or those at the corners and some in between.
   scratch.facets.clear();
-  const std::size_t count = pattern.facet_count(),
-                    stride = count / std::min(count, std::max(kMeasuredFacets, count / kMeasuredShare));
+  const std::size_t count = pattern.facet_count();
+  // The subfaces of an n-gon meet inside it, and less smoothly than they are: there all count.
+  const double share =
+      domain == FaceDomain::quad_subfaces ? 1 : std::max(double(kMeasuredFacets) / double(count), 1.0 / kMeasuredShare);
+  const auto is_chosen = [&](std::size_t f) {
+    // Multiples of the golden ratio are spread evenly, and in step with no rows of the pattern.
+    constexpr std::uint32_t kGoldenRatio = 0x9e3779b9u;
+    return share >= 1 || static_cast<std::uint32_t>(f) * kGoldenRatio < share * 4294967296.0;
+  };
   const auto is_corner = [&](std::uint32_t point) {
     return point < pattern.boundary_count && (point == 0 || scratch.side_of[point] != scratch.side_of[point - 1]);
   };
   for (std::size_t f = 0; f < count; ++f) {
     const std::uint32_t* c = &pattern.facets[3 * f];
     if (has_no_area(c, scratch.points)) continue;
-    if (f % stride == stride / 2 || (stride > 1 && (is_corner(c[0]) || is_corner(c[1]) || is_corner(c[2]))))
+    const int on_boundary =
+        (c[0] < pattern.boundary_count) + (c[1] < pattern.boundary_count) + (c[2] < pattern.boundary_count);
+    if (on_boundary > 1 || is_chosen(f) || is_corner(c[0]) || is_corner(c[1]) || is_corner(c[2]))
       scratch.facets.push_back(static_cast<std::uint32_t>(f));
   }
 
@@ -331,22 +346,29 @@ bool RateFinder::measure(std::size_t face, Scratch& scratch) const {
       const double shading = cut_for_shading ? deviation.shading * kShadingBetweenSamples : 0;
       const double excess = std::max(deviation.pixels, shading) / tolerance_;
       if (!(excess > kGoodShare)) continue;
-      good = false;
+      // For the sake of normals alone rates rise to a limit.
+      const bool for_shading = !(deviation.pixels / tolerance_ > kGoodShare);
       const double rise = std::min(std::sqrt(excess / kAim), kLargestRise);
+      const auto raised = [&](double rate, double limit) {
+        const double wanted = for_shading ? std::max(rate, std::min(rate * rise, limit)) : rate * rise;
+        good = good && wanted == rate;
+        return wanted;
+      };
       std::array<bool, 2> along{true, true};
       if (m < 3 && domain == FaceDomain::quad) {
         const Vec2f d = pattern.parameters[c[(m + 1) % 3]] - pattern.parameters[c[m]];
         along = {2 * std::abs(d.x) > std::abs(d.y), 2 * std::abs(d.y) > std::abs(d.x)};
       }
       for (std::size_t k = 0; k < 2; ++k)
-        if (along[k]) demand.inner[k] = std::max(demand.inner[k], inner_[face][k] * rise);
+        if (along[k]) demand.inner[k] = std::max(demand.inner[k], raised(inner_[face][k], shading_inner_[face][k]));
       for (std::size_t k = 0; k < 3; ++k)
         if (c[k] < pattern.boundary_count) {
           const std::size_t side = scratch.side_of[c[k]];
-          if (domain != FaceDomain::quad || along[side % 2]) demand.raise_side(side, scratch.rates[side] * rise);
+          if (domain != FaceDomain::quad || along[side % 2])
+            demand.raise_side(side, raised(scratch.rates[side], shading_edges_[sides[side].edge]));
           const std::size_t before = (side + sides.size() - 1) % sides.size();
           if (is_corner(c[k]) && (domain != FaceDomain::quad || along[before % 2]))
-            demand.raise_side(before, scratch.rates[before] * rise);
+            demand.raise_side(before, raised(scratch.rates[before], shading_edges_[sides[before].edge]));
         }
     }
   }
@@ -376,6 +398,13 @@ void RateFinder::settle_inner(std::size_t face) {
   }
 }
 
+/// From the rates that distance was estimated to need.
+void RateFinder::limit_shading() {
+  const auto limit = [](std::uint32_t rate) { return std::min<double>(rate * kMostForShading, kLargestViewRate); };
+  for (const std::uint32_t rate : edges_) shading_edges_.push_back(limit(rate));
+  for (const auto& rates : inner_) shading_inner_.push_back({limit(rates[0]), limit(rates[1])});
+}
+
 ViewRates RateFinder::find() {
   const auto for_each_face = [&](const auto& function) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface_.face_count(), kFacesAtOnce), [&](const auto& range) {
@@ -394,6 +423,7 @@ ViewRates RateFinder::find() {
   });
   for (int round = 0; round < kMostRounds; ++round) {
     settle();
+    if (round == 0) limit_shading();
     const Buffer<std::uint32_t> edges_before = edges_;
     const Buffer<std::array<std::uint32_t, 2>> inner_before = inner_;
     // Rates are read as they were when the round began; what it demands is merged when it is over.
@@ -433,6 +463,13 @@ ViewRates RateFinder::find() {
 
 ViewRates rates_for_view(const ParametricSurface& surface, const TessellationView& view, double tolerance) {
   return RateFinder(surface, view, tolerance).find();
+}
+
+ViewRates rates_for_distance(const ParametricSurface& surface, double distance) {
+  constexpr double kPixels = 0.25;
+  TessellationView view;  // from everywhere
+  view.pixel = distance / kPixels;
+  return rates_for_view(surface, view, kPixels);
 }
 
 }  // namespace raytree

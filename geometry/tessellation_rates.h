@@ -29,4 +29,8 @@ ViewRates rates_for_view(const ParametricSurface& surface, const TessellationVie
 
 inline constexpr int kMostRounds = 6;
 
+/// The same where nobody looks: at most `distance` (> 0) of the surface's own units off, and shaded as a picture is in
+/// which that distance is a quarter of a pixel.
+ViewRates rates_for_distance(const ParametricSurface& surface, double distance);
+
 }  // namespace raytree

@@ -44,8 +44,8 @@ struct TessellationView {
     const double length = d.length();
     if (projection == Projection::any_direction) return length / pixel;
     Vec3d p;
-    to_world.multVecMatrix(point, p);
-    p -= eye;
+    to_world.multDirMatrix(point, p);
+    p += to_world.translation() - eye;
     const double x = p.dot(right), y = p.dot(up), z = p.dot(forward);
     const double scale = projection == Projection::perspective ? pixel * z : pixel;
     const double margin = (1 + kFrameMargin) * scale;

@@ -1,6 +1,9 @@
 // `raytree convert` from outside: what it writes, and what it refuses.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "geometry/mesh_file.h"
 #include "tests/app/program.h"
 
 namespace raytree::test {
@@ -30,6 +33,73 @@ TEST(Convert, WritesWhatWasMade) {
   EXPECT_TRUE(contains(convert({"--subdivide", "1", "--scheme", "bilinear"}, "flat.obj"), "v 1 1 1\n"));
 }
 
+TEST(Convert, TessellatesWithinADistance) {
+  const TemporaryFolder folder;
+  write_text(folder.path("cube.obj"), kCubeObj);
+  const auto triangles = [&](const char* tolerance) {
+    const std::string out = folder.path(std::string(tolerance) + ".ply");
+    const ProgramResult result = run_program({"convert", folder.path("cube.obj"), out, "--tolerance", tolerance});
+    EXPECT_EQ(result.status, 0) << result.err;
+    Warnings warnings;
+    return read_mesh_file(out, warnings).face_count();
+  };
+  // Facets' distance goes with the square of their size: 16 times closer, about 16 times as many.
+  const std::size_t coarse = triangles("0.01"), fine = triangles("0.000625");
+  EXPECT_GT(coarse, 12u);
+  EXPECT_GE(fine, 8 * coarse);
+  EXPECT_LE(fine, 32 * coarse);
+}
+
+TEST(Convert, ReadsPatches) {
+  const TemporaryFolder folder;
+  // A flat square of side 3: one patch, its points in place.
+  std::string text = "1\n3 3\n";
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) text += std::to_string(i) + " " + std::to_string(j) + " 0\n";
+  write_text(folder.path("square.bpt"), text);
+  const auto convert = [&](const std::vector<std::string>& flags) {
+    const ProgramResult result =
+        run_program(with({"convert", folder.path("square.bpt"), folder.path("out.obj")}, flags));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return file_text(folder.path("out.obj"));
+  };
+  const std::string cut = convert({"--rate", "3"});
+  EXPECT_TRUE(contains(cut, "v 1 2 0\n") && contains(cut, "vn 0 0 1\n")) << cut;
+  EXPECT_EQ(std::count(cut.begin(), cut.end(), 'f'), 18);
+  const std::string flat = convert({"--tolerance", "0.001"});
+  EXPECT_EQ(std::count(flat.begin(), flat.end(), 'f'), 2) << "flat: no more than it takes";
+  const std::string patches = folder.path("square.bpt"), out = folder.path("none.obj");
+  expect_bad_input({"convert", patches, out}, {"square.bpt", "--rate or --tolerance"});
+  expect_bad_input({"convert", patches, out, "--subdivide", "1"}, {"--subdivide", "cages"});
+  expect_bad_input({"convert", patches, out, "--rate", "2", "--scheme", "loop"}, {"--scheme", "cages"});
+  write_text(patches, "2\n1 2\n");
+  expect_bad_input({"convert", patches, out, "--rate", "2"}, {"square.bpt"});
+}
+
+TEST(Convert, KeepsTagsWhereTheFileCan) {
+  const TemporaryFolder folder;
+  write_text(folder.path("cube.obj"), kCubeObj + std::string("t crease 2/1/0 0 1 2.5\nt corner 1/1/0 7 10\n"));
+  const auto convert = [&](const std::string& name, const std::vector<std::string>& flags) {
+    const ProgramResult result = run_program(with({"convert", folder.path("cube.obj"), folder.path(name)}, flags));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err;
+  };
+  EXPECT_EQ(convert("same.obj", {}), "");
+  const std::string same = file_text(folder.path("same.obj"));
+  EXPECT_TRUE(contains(same, "t crease 2/1/0 0 1 2.5\n") && contains(same, "t corner 1/1/0 7 10\n")) << same;
+  EXPECT_EQ(convert("once.obj", {"--subdivide", "1"}), "");
+  const std::string once = file_text(folder.path("once.obj"));
+  // The crease's two halves, a level less sharp.
+  std::size_t halves = 0;
+  for (std::size_t at = once.find("t crease"); at != std::string::npos; at = once.find("t crease", at + 1)) {
+    EXPECT_TRUE(contains(once.substr(at, once.find('\n', at) - at), " 1.5"));
+    ++halves;
+  }
+  EXPECT_EQ(halves, 2u) << once;
+  EXPECT_TRUE(contains(convert("same.ply", {}), "subdivision tags left out"));
+  EXPECT_EQ(convert("limit.ply", {"--limit"}), "") << "no tags are left to lose";
+}
+
 TEST(Convert, RefusesWhatItCannotDo) {
   const TemporaryFolder folder;
   const std::string cube = folder.path("cube.obj"), out = folder.path("out.obj");
@@ -41,6 +111,12 @@ TEST(Convert, RefusesWhatItCannotDo) {
   expect_bad_input({"convert", cube, out, "--subdivide", "16"}, {"--subdivide", "15"});
   expect_bad_input({"convert", cube, out, "--subdivide", "1", "--rate", "2"}, {"--rate", "neither"});
   expect_bad_input({"convert", cube, out, "--rate", "0"}, {"--rate"});
+  expect_bad_input({"convert", cube, out, "--rate", "1025"}, {"--rate", "1024"});
+  expect_bad_input({"convert", cube, out, "--tolerance", "0"}, {"--tolerance", "larger than 0"});
+  expect_bad_input({"convert", cube, out, "--tolerance", "nan"}, {"--tolerance"});
+  expect_bad_input({"convert", cube, out, "--tolerance", "thin"}, {"--tolerance", "thin"});
+  expect_bad_input({"convert", cube, out, "--tolerance", "1", "--rate", "2"}, {"--tolerance", "--rate"});
+  expect_bad_input({"convert", cube, out, "--tolerance", "1", "--limit"}, {"--tolerance", "--limit"});
   expect_bad_input({"convert", cube, out, "--scheme", "loop"}, {"--scheme", "--subdivide"});
   expect_bad_input({"convert", cube, out, "--limit", "--scheme", "lop"}, {"loop"});
   expect_bad_input({"convert", cube, out, "--limit", "--scheme", "loop"}, {"cube.obj", "face 0", "triangles alone"});

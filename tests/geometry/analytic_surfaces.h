@@ -52,6 +52,10 @@ class AnalyticSurface : public ParametricSurface {
   void evaluate(std::size_t face, std::span<const Vec2f> parameters, std::span<SurfaceSample> samples) const override {
     for (std::size_t i = 0; i < parameters.size(); ++i) samples[i] = evaluate_(face, Vec2d(parameters[i]));
   }
+  /// Texture coordinates are the parameters.
+  void evaluate_texture(std::size_t, std::span<const Vec2f> parameters, std::span<Vec2f> coordinates) const override {
+    std::copy(parameters.begin(), parameters.end(), coordinates.begin());
+  }
   std::uint32_t source_face(std::size_t face) const override { return std::uint32_t(face) + 100; }
 
   bool textured = false;
@@ -78,7 +82,6 @@ inline AnalyticSurface torus(std::uint32_t around, std::uint32_t across) {
     s.normal = Vec3f(Vec3d(std::cos(v) * std::cos(u), std::sin(v), -std::cos(v) * std::sin(u)));
     s.du = Vec3f(Vec3d(-std::sin(u), 0, -std::cos(u)) * (reach * du));
     s.dv = Vec3f(Vec3d(-std::sin(v) * std::cos(u), std::cos(v), std::sin(v) * std::sin(u)) * (kTubeRadius * dv));
-    s.texture = {float(p.x), float(p.y)};
     return s;
   });
   const auto wrapped = [=](std::uint32_t i, std::uint32_t j) { return i % around + j % across * around; };
@@ -107,7 +110,7 @@ inline AnalyticSurface octant_sphere() {
     const double length = flat.length();
     const Vec3d on = flat / length;
     const auto along = [&](const Vec3d& d) { return Vec3f((d - on * on.dot(d)) / length); };
-    return SurfaceSample{Vec3f(on), Vec3f(on), along(b - a), along(c - a), {float(p.x), float(p.y)}};
+    return SurfaceSample{Vec3f(on), Vec3f(on), along(b - a), along(c - a)};
   });
   for (const auto& face : kFaces) surface.add_face(FaceDomain::triangle, face);
   return surface;
@@ -122,7 +125,6 @@ inline AnalyticSurface saddle(double height) {
     s.normal = Vec3f(Vec3d(-height * y, -height * x, 1).normalized());
     s.du = Vec3f(Vec3d(2, 0, 2 * height * y));
     s.dv = Vec3f(Vec3d(0, 2, 2 * height * x));
-    s.texture = {float(p.x), float(p.y)};
     return s;
   });
   surface.add_face(FaceDomain::quad, std::vector<std::uint32_t>{0, 1, 2, 3});
@@ -164,7 +166,6 @@ inline SurfaceSample dome_sample(std::uint32_t sides, double height, Vec2d p) {
   s.normal = Vec3f(Vec3d(2 * height * q.x, 1, 2 * height * q.y).normalized());
   s.du = lifted(slope(kStep, 0));
   s.dv = lifted(slope(0, kStep));
-  s.texture = {float(p.x), float(p.y)};
   return s;
 }
 
@@ -184,7 +185,6 @@ inline AnalyticSurface cylinder(std::uint32_t sides) {
   const auto rim = [](double angle) { return Vec3d(std::cos(angle), 0, -std::sin(angle)); };
   AnalyticSurface surface(2 * std::size_t(sides), [=](std::size_t face, Vec2d p) {
     SurfaceSample s;
-    s.texture = {float(p.x), float(p.y)};
     if (face < sides) {
       const double angle = (double(face) + p.x) * step;
       s.position = Vec3f(rim(angle) + Vec3d(0, 2 * p.y - 1, 0));

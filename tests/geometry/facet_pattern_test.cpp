@@ -9,6 +9,8 @@
 #include <set>
 
 #include "geometry/error.h"
+#include "geometry/facet_pattern_set.h"
+#include "tests/geometry/analytic_surfaces.h"
 
 namespace raytree {
 namespace {
@@ -124,19 +126,39 @@ TEST(FacetPattern, PointsOfASideAreSpacedEvenly) {
 }
 
 TEST(FacetPattern, SetsMakeEachPatternOnceAndKeepWithinTheirBytes) {
-  FacetPatternSet set;
-  const Rates a{2, 2, 2, 2, 2, 2}, b{2, 3, 2, 2, 2, 2}, c{2, 2, 2, 2};
-  EXPECT_EQ(set.find(FaceDomain::quad, a), 0u);
-  EXPECT_EQ(set.find(FaceDomain::quad, b), 1u);
-  EXPECT_EQ(set.find(FaceDomain::triangle, c), 2u);
-  EXPECT_EQ(set.find(FaceDomain::quad_subfaces, c), 3u);
-  EXPECT_EQ(set.find(FaceDomain::quad, a), 0u);
-  EXPECT_EQ(set.size(), 4u);
-  EXPECT_EQ(set[1].facet_count(), 9u);
-  FacetPatternSet small(1);
-  EXPECT_EQ(small.find(FaceDomain::quad, a), 0u);
-  EXPECT_EQ(small.find(FaceDomain::quad, b), FacetPatternSet::kNotKept);
-  EXPECT_EQ(small.find(FaceDomain::quad, a), 0u);
+  // Faces of four kinds in turn, of them one without sides, over several blocks of those that are looked at side by
+  // side.
+  test::AnalyticSurface surface(4, [](std::size_t, Vec2d) { return SurfaceSample(); });
+  TessellationRates rates;
+  constexpr std::uint32_t kFaces = 20000;
+  for (std::uint32_t face = 0; face < kFaces; ++face) {
+    std::vector<FaceEdge> sides;
+    for (std::uint32_t i = 0; i < 4 && face % 4 != 3; ++i) sides.push_back({4 * face + i, i, false, false});
+    if (face % 4 == 2) sides.pop_back();
+    surface.add_face(face % 4 == 2 ? FaceDomain::triangle : FaceDomain::quad, sides);
+    rates.inner.push_back({2, 2});
+  }
+  rates.edges.assign(surface.edge_count(), 2);
+  for (std::uint32_t face = 1; face < kFaces; face += 4) rates.edges[4 * face] = 3;
+  const FacetPatternSet set(surface, rates), small(surface, rates, 1);
+  EXPECT_EQ(set.pattern_count(), 3u);
+  std::vector<std::uint16_t> face_rates;
+  for (std::size_t face = 0; face < kFaces; ++face) {
+    if (face % 4 == 3) {
+      EXPECT_EQ(set.kept(face), nullptr) << "a hole";
+      EXPECT_EQ(set.counts(face).facets, 0u);
+      continue;
+    }
+    rates_of_face(surface, rates, face, face_rates);
+    const FacetCounts counts = count_facets(surface.domain(face), face_rates);
+    ASSERT_NE(set.kept(face), nullptr);
+    EXPECT_EQ(set.kept(face), set.kept(face % 4)) << "the same pattern";
+    EXPECT_EQ(set.kept(face)->facet_count(), counts.facets);
+    EXPECT_EQ(set.counts(face).facets, counts.facets);
+    EXPECT_EQ(set.counts(face).interior, counts.interior);
+    EXPECT_EQ(small.kept(face) != nullptr, face % 4 == 0) << "one pattern fills the bytes";
+    EXPECT_EQ(small.counts(face).facets, counts.facets);
+  }
 }
 
 TEST(FacetPattern, FacesOfTooManyFacetsAreRefused) {

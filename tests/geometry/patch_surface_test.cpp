@@ -11,6 +11,7 @@
 #include "geometry/open_edges.h"
 #include "geometry/patch_reader.h"
 #include "geometry/tessellation.h"
+#include "tests/geometry/surface_samples.h"
 #include "tests/patch_samples.h"
 #include "tests/reader_checks.h"
 #include "tests/test_data.h"
@@ -38,13 +39,6 @@ BezierPatch square(double x, double slope) {
   return patch;
 }
 
-SurfaceSample sample(const ParametricSurface& surface, std::size_t face, const Vec2d& at) {
-  const Vec2f parameter(at);
-  SurfaceSample result;
-  surface.evaluate(face, {&parameter, 1}, {&result, 1});
-  return result;
-}
-
 /// Every edge's uses: sides with their face.
 std::map<std::uint32_t, std::vector<std::pair<std::size_t, std::size_t>>> uses_of_edges(const PatchSurface& surface) {
   std::map<std::uint32_t, std::vector<std::pair<std::size_t, std::size_t>>> uses;
@@ -68,8 +62,8 @@ void expect_consistent(const PatchSurface& surface) {
     EXPECT_EQ(at(1).vertex, end(0));
     EXPECT_EQ(at(0).sharp_edge, at(1).sharp_edge);
     for (int i = 0; i <= 8; ++i) {
-      const Vec3f a = sample(surface, uses[0].first, side_parameter(uses[0].second, i / 8.0)).position;
-      const Vec3f b = sample(surface, uses[1].first, side_parameter(uses[1].second, 1 - i / 8.0)).position;
+      const Vec3f a = test::sample_at(surface, uses[0].first, side_parameter(uses[0].second, i / 8.0)).position;
+      const Vec3f b = test::sample_at(surface, uses[1].first, side_parameter(uses[1].second, 1 - i / 8.0)).position;
       // Both rounded from doubles that agree to a few ulp of double: at most one ulp of float apart.
       EXPECT_LE((a - b).length(), 2 * std::numeric_limits<float>::epsilon() * std::max(a.length(), 1e-3f));
     }
@@ -86,7 +80,7 @@ TEST(PatchSurface, JoinsPatchesAlongEqualControlPoints) {
   EXPECT_FALSE(right.sharp_edge) << "one plane";
   EXPECT_TRUE(surface.sides(0)[0].sharp_edge) << "a boundary";
   expect_consistent(surface);
-  EXPECT_EQ(sample(surface, 1, {0.5, 0.5}).normal, Vec3f(0, 0, 1));
+  EXPECT_EQ(test::sample_at(surface, 1, {0.5, 0.5}).normal, Vec3f(0, 0, 1));
 }
 
 TEST(PatchSurface, JoinsWhatSinglePrecisionCannotTellApart) {
@@ -162,19 +156,19 @@ TEST(PatchSurface, TheSphereIsClosedAndItsPolesAreVertices) {
         if (!surface.sides(face)[side].collapsed) continue;
         ++collapsed;
         EXPECT_EQ(here.vertex, surface.sides(face)[(side + 1) % 4].vertex);
-        const Vec3f corner = sample(surface, face, side_parameter(side, 0)).position;
+        const Vec3f corner = test::sample_at(surface, face, side_parameter(side, 0)).position;
         for (int i = 0; i <= 100; ++i) {
-          const SurfaceSample at = sample(surface, face, side_parameter(side, i / 100.0));
+          const SurfaceSample at = test::sample_at(surface, face, side_parameter(side, i / 100.0));
           EXPECT_EQ(std::memcmp(&at.position, &corner, sizeof corner), 0) << "the same bits";
           EXPECT_NEAR(at.normal.y, (flip ? -1 : 1) * corner.y, 1e-7);
         }
       }
     EXPECT_EQ(collapsed, 8);
     for (std::size_t face = 0; face < 8; ++face) {
-      const SurfaceSample at = sample(surface, face, {0.25, 0.5});
+      const SurfaceSample at = test::sample_at(surface, face, {0.25, 0.5});
       EXPECT_NEAR(at.position.dot(at.normal), flip ? -1 : 1, 1e-6) << "outward, or inward";
       EXPECT_GT(at.du.cross(at.dv).dot(at.normal), 0) << "right-handed either way";
-      EXPECT_EQ(at.texture, flip ? Vec2f(0.5f, 0.25f) : Vec2f(0.25f, 0.5f));
+      EXPECT_EQ(test::texture_at(surface, face, {0.25f, 0.5f}), flip ? Vec2f(0.5f, 0.25f) : Vec2f(0.25f, 0.5f));
     }
   }
 }
@@ -186,9 +180,9 @@ TEST(PatchSurface, ACollapsedSideIsOnePointToTheBit) {
   for (std::size_t i = 0; i < 4; ++i) patch.points[i] = {1 + 0x1p-24, 0.5 + 0x1p-25, -1 - 0x3p-24};
   const PatchSurface surface = surface_of({patch});
   ASSERT_TRUE(surface.sides(0)[0].collapsed);
-  const Vec3f corner = sample(surface, 0, {0, 0}).position;
+  const Vec3f corner = test::sample_at(surface, 0, {0, 0}).position;
   for (int i = 0; i <= 100; ++i) {
-    const Vec3f point = sample(surface, 0, {i / 100.0, 0}).position;
+    const Vec3f point = test::sample_at(surface, 0, {i / 100.0, 0}).position;
     EXPECT_EQ(std::memcmp(&point, &corner, sizeof corner), 0) << i;
   }
 }
@@ -266,7 +260,8 @@ TEST(PatchSurface, FarAwayNothingIsLost) {
   expect_consistent(surface);
   // Moving the control points rounded them to half an ulp of 3e6.
   for (std::size_t face = 0; face < 8; ++face)
-    EXPECT_NEAR((Vec3d(sample(surface, face, {0.25, 0.5}).position) + surface.origin() - far).length(), 1, 1e-8 + 1e-7);
+    EXPECT_NEAR((Vec3d(test::sample_at(surface, face, {0.25, 0.5}).position) + surface.origin() - far).length(), 1,
+                1e-8 + 1e-7);
 }
 
 TEST(PatchSurface, EveryNormalIsUnitWhateverIsAskedFor) {
@@ -284,7 +279,7 @@ TEST(PatchSurface, EveryNormalIsUnitWhateverIsAskedFor) {
     for (std::size_t face = 0; face < surface.face_count(); ++face)
       for (const double u : {0.0, 0.3, 1.0})
         for (const double v : {0.0, 0.3, 1.0})
-          EXPECT_NEAR(sample(surface, face, {u, v}).normal.length(), 1, 1e-6) << face << ' ' << u << ' ' << v;
+          EXPECT_NEAR(test::sample_at(surface, face, {u, v}).normal.length(), 1, 1e-6) << face << ' ' << u << ' ' << v;
   }
 }
 
@@ -341,9 +336,10 @@ TEST(PatchSurface, OfTheTeapot) {
         if (surface.sides(face)[side].sharp_edge) ++creases;
         for (int i = 0; i <= 16; ++i)
           widest = std::max(
-              widest, degrees_between(
-                          Vec3d(sample(surface, uses[0].first, side_parameter(uses[0].second, i / 16.0)).normal),
-                          Vec3d(sample(surface, uses[1].first, side_parameter(uses[1].second, 1 - i / 16.0)).normal)));
+              widest,
+              degrees_between(
+                  Vec3d(test::sample_at(surface, uses[0].first, side_parameter(uses[0].second, i / 16.0)).normal),
+                  Vec3d(test::sample_at(surface, uses[1].first, side_parameter(uses[1].second, 1 - i / 16.0)).normal)));
       }
     }
     EXPECT_EQ(surface.edge_count(), 76u);
@@ -354,11 +350,11 @@ TEST(PatchSurface, OfTheTeapot) {
     EXPECT_EQ(surface.vertex_count(), 37u);
     // Outside is away from the axis, or from the body's middle.
     for (std::size_t face = 4; face < 12; ++face) {
-      const SurfaceSample at = sample(surface, face, {0.5, 0.5});
+      const SurfaceSample at = test::sample_at(surface, face, {0.5, 0.5});
       EXPECT_GT(at.normal.x * at.position.x + at.normal.y * at.position.y, 0) << face;
     }
-    EXPECT_GT(sample(surface, 20, {0.5, 0}).normal.z, 0.999f) << "the lid's knob";
-    EXPECT_LT(sample(surface, 28, {0.5, 0}).normal.z, -0.999f) << "the base";
+    EXPECT_GT(test::sample_at(surface, 20, {0.5, 0}).normal.z, 0.999f) << "the lid's knob";
+    EXPECT_LT(test::sample_at(surface, 28, {0.5, 0}).normal.z, -0.999f) << "the base";
   }
   if (!found) std::fprintf(stderr, "LEFT OUT: the teapot as a surface\n");
 }

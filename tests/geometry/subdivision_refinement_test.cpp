@@ -134,6 +134,29 @@ TEST(SubdivisionRefinement, KeepsTextureGroupsAndLeavesHolesOut) {
   EXPECT_EQ(ball.face_count(), 256u);
 }
 
+TEST(SubdivisionRefinement, ControlPointsOfAMeshWithTagsAreACageWithTags) {
+  PolygonMesh cage = test::grid_cage(5, 5, 2);
+  SubdivisionRules rules;
+  rules.boundary = BoundaryRule::edge_and_corner;
+  rules.creases = {{{5, 6, 7, 8, 9}, 2.5}, {{10, 11, 12}, 10}, {{17, 18}, 0.4}};
+  rules.corners = {{0, 1.5}, {18, 3}};
+  for (const auto method : {CreaseMethod::uniform, CreaseMethod::chaikin}) {
+    rules.crease_method = method;
+    cage.subdivision = rules;
+    const PolygonMesh once = refined(cage, rules, 1, RefinedPoints::control);
+    ASSERT_TRUE(once.subdivision);
+    EXPECT_EQ(once.subdivision->boundary, BoundaryRule::edge_and_corner);
+    const PolygonMesh in_steps = refined(once, *once.subdivision, 2, RefinedPoints::control);
+    const PolygonMesh at_once = refined(cage, rules, 3, RefinedPoints::control);
+    EXPECT_EQ(in_steps.positions.size(), at_once.positions.size());
+    EXPECT_EQ(in_steps.face_count(), at_once.face_count());
+    // Control points of the first step are rounded to float: 2^-24 of 5 units and of what sums of them leave.
+    EXPECT_LE(set_distance(in_steps.positions, at_once.positions), 2e-6);
+    EXPECT_FALSE(refined(cage, rules, 1, RefinedPoints::limit).subdivision) << "points of the limit are no cage";
+  }
+  EXPECT_FALSE(refined(cube_cage(), {}, 1, RefinedPoints::control).subdivision);
+}
+
 TEST(SubdivisionRefinement, RefusesWhatCannotBe) {
   Warnings warnings;
   for (const int levels : {-1, 14, 16})

@@ -192,6 +192,25 @@ TEST(Tessellation, TextureCoordinatesAreEachFacesOwn) {
   for (const double area : covered) EXPECT_NEAR(area, 1, 1e-6);
 }
 
+TEST(Tessellation, SharedPointsAreTheLowestFaces) {
+  // Every face has a plane of its own, so that who evaluated a point shows in it.
+  test::AnalyticSurface surface(6, [](std::size_t face, Vec2d p) {
+    SurfaceSample s;
+    s.position = Vec3f(Vec3d(p.x, p.y, double(face)));
+    s.normal = Vec3f(0, 0, 1);
+    return s;
+  });
+  surface.add_face(FaceDomain::quad, {0, 1, 2, 3});
+  surface.add_face(FaceDomain::quad, {1, 4, 5, 2});
+  surface.add_face(FaceDomain::quad, {3, 2, 5, 0});
+  const TriangleMesh mesh = tessellate_uniformly(surface, 3);
+  // Face 0: 4 corners and 4 sides of 2 points; face 1: 2 corners and 3 sides that are left; face 2: the side from
+  // vertex 5 to 0. Each has 4 points inside.
+  std::array<int, 3> counts{};
+  for (const Vec3f& p : mesh.positions) ++counts.at(static_cast<std::size_t>(p.z));
+  EXPECT_EQ(counts, (std::array<int, 3>{4 + 8 + 4, 2 + 6 + 4, 2 + 4}));
+}
+
 TEST(Tessellation, HolesLeaveNothingBehind) {
   test::AnalyticSurface surface = test::saddle(1);
   surface.add_hole();
