@@ -122,6 +122,7 @@ Json json_of(const ShapeSummary& shape) {
       {"name", shape.name},
       {"kind", shape.kind},
       {"material", shape.material},
+      {"shading", shape.shading},
       {"faces",
        {{"triangles", shape.faces_by_size[0]}, {"quads", shape.faces_by_size[1]}, {"larger", shape.faces_by_size[2]}}},
       {"traced_triangles", shape.triangles},

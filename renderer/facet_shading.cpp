@@ -31,6 +31,10 @@ ScanPlane scan_plane(const Camera& camera, const Vec3f& direction, bool eye) {
   return scan;
 }
 
+Rgb between_none_and(const Rgb& most, const Rgb& light) {
+  return {std::clamp(light.r, 0.0f, most.r), std::clamp(light.g, 0.0f, most.g), std::clamp(light.b, 0.0f, most.b)};
+}
+
 }  // namespace
 
 Vec3f consistent_normal(const Vec3f& normal, const Vec3f& to_viewer, float least_cosine) {
@@ -132,6 +136,7 @@ void FacetShading::interpolate(const FacetRecord& record, const Hit& hit, const 
 LocalLight FacetShading::interpolated_light(const FacetPoint& facet, const ShadingPoint& point, const Light& light,
                                             HighlightForm form) const {
   LocalLight sum;
+  Rgb most_diffuse, most_highlight;
   sum.direction = light.direction_from(point.surface.position, sum.distance);
   for (std::uint32_t c = facet.first; c < facet.first + facet.count; ++c) {
     const ShadedCorner& corner = corners_[c];
@@ -144,10 +149,13 @@ LocalLight FacetShading::interpolated_light(const FacetPoint& facet, const Shadi
     sum.lit = true;
     sum.diffuse += arriving.diffuse * corner.weight;
     sum.highlight += arriving.highlight * corner.weight;
+    most_diffuse = max(most_diffuse, arriving.diffuse);
+    most_highlight = max(most_highlight, arriving.highlight);
   }
-  // Mean value coordinates of concave polygons may be negative.
-  sum.diffuse = max(sum.diffuse, Rgb());
-  sum.highlight = max(sum.highlight, Rgb());
+  // Mean value coordinates of concave polygons may be negative, and others beyond 1; light stays between that of
+  // corners.
+  sum.diffuse = between_none_and(most_diffuse, sum.diffuse);
+  sum.highlight = between_none_and(most_highlight, sum.highlight);
   return sum;
 }
 

@@ -191,10 +191,12 @@ std::vector<const ShapeDescription*> all_shapes(const SceneDescription& scene) {
 
 /// Notes how each shape's facets are shaded, and whether any asks for more than its triangles.
 void resolve_shading(Scene& scene) {
-  for (const ShapeDescription* shape : all_shapes(scene.description))
-    scene.shape_shading.push_back(
-        {shading_of(*shape, scene.description.render.facets),
-         shape->half_distance > 0 ? static_cast<float>(std::min(1 / shape->half_distance, 1e30)) : 0.0f});
+  for (const ShapeDescription* shape : all_shapes(scene.description)) {
+    ShapeShading shading{shading_of(*shape, scene.description.render.facets)};
+    if (shading.method == ShadingMethod::flat && shape->half_distance > 0)
+      shading.inverse_half_distance = static_cast<float>(std::min(1 / shape->half_distance, 1e30));
+    scene.shape_shading.push_back(shading);
+  }
   const auto note = [&](const BoundedShapes& list) {
     for (const MeshEntry& entry : list.meshes) scene.shades_facets |= entry.facets != nullptr;
   };

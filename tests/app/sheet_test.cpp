@@ -79,6 +79,7 @@ TEST(ShadingFlags, ChangeThePictureAndAreChecked) {
                    {"--classic", "exclude"});
   const ProgramResult info = run_program({"info", "molecule", "--shading", "gouraud"});
   EXPECT_TRUE(contains(info.out, "gouraud shading")) << info.out;
+  EXPECT_TRUE(contains(run_program({"info", "molecule", "--json"}).out, "\"shading\": \"phong\""));
 }
 
 }  // namespace

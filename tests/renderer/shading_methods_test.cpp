@@ -303,7 +303,7 @@ TEST(ShadingMethods, ReflectionsFollowTheNormalOfTheMethod) {
 // Warnock: parallel planes that face the light alike differ by their distance from it.
 TEST(ShadingMethods, WarnocksTermTellsParallelPlanesApart) {
   for (const bool lamp_at_eye : {true, false}) {
-    const auto shades = [&](double half_distance) {
+    const auto shades = [&](double half_distance, bool flat = true) {
       SceneDescription scene = test::headlit_scene(
           test::mesh_shape(test::grid_mesh(1, 1, [](int, int) { return 0.0; }), "paint"), 20, 20, 4);
       scene.shapes[0].transform.translate(Vec3d(-1, 0, 0));
@@ -311,6 +311,7 @@ TEST(ShadingMethods, WarnocksTermTellsParallelPlanesApart) {
           test::mesh_shape(test::grid_mesh(1, 1, [](int, int) { return 5.0; }), "paint", NormalSource::flat, "near"));
       scene.shapes[1].transform.translate(Vec3d(1, 0, 0));
       for (ShapeDescription& shape : scene.shapes) shape.half_distance = half_distance;
+      if (!flat) scene.render.facets.shading = ShadingMethod::phong;
       if (lamp_at_eye) scene.lights = {test::point_light({0, 0, 1e6})};
       const std::vector<float> values = test::green(scene);
       return std::pair(values[10 * 20 + 5], values[10 * 20 + 15]);
@@ -318,6 +319,7 @@ TEST(ShadingMethods, WarnocksTermTellsParallelPlanesApart) {
     const auto [far_plain, near_plain] = shades(0);
     EXPECT_NEAR(far_plain, near_plain, 1e-6);
     const auto [far_shade, near_shade] = shades(lamp_at_eye ? 1e6 : 10);
+    EXPECT_EQ(shades(10, false), shades(0, false)) << "the term is flat shading's alone";
     if (lamp_at_eye) {
       EXPECT_NEAR(far_shade, 0.5, 1e-5);
       continue;
