@@ -73,20 +73,22 @@ class SampledFacet {
   SampledFacet(const TessellationView& view, const Vec3d& origin, const std::array<FacetCorner, 3>& corners,
                const std::array<bool, 3>& hard)
       : view_(view), origin_(origin), corners_(corners), hard_(hard) {
-    double longest = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const FacetCorner &a = corners[i], &b = corners[(i + 1) % 3];
       const double pixels = view.pixels(origin + a.position, b.position - a.position);
-      longest = std::max(longest, pixels);
+      longest_ = std::max(longest_, pixels);
       if (pixels > 0) turn_ = std::max(turn_, (b.normal - a.normal).length() / pixels);
     }
-    shaded_ = longest >= kShortestShadedEdge;
+    shaded_ = longest_ >= kShortestShadedEdge;
     normal_ = (corners[1].position - corners[0].position).cross(corners[2].position - corners[0].position);
     const double length = normal_.length();
     if (length > 0) normal_ /= length;
     for (const FacetCorner& corner : corners) bend_ = std::max(bend_, 2 * normal_.cross(corner.normal).length());
     bend_ = length > 0 ? std::min(bend_, 1.0) : 1;
   }
+
+  /// Of its edges, pixels.
+  double longest() const { return longest_; }
 
   /// At the surface's point of barycentric coordinates `weights` in the face's parameters.
   FacetDeviation at(const SurfaceSample& truth, const std::array<double, 3>& weights) const {
@@ -132,6 +134,7 @@ class SampledFacet {
   std::array<bool, 3> hard_;
   Vec3d normal_;     ///< of the facet, unit; zero for one without area
   double bend_ = 0;  ///< sine of the angle that the next facet may be turned by
+  double longest_ = 0;
   double turn_ = 0;  ///< of the normal, largest, radians a pixel
   bool shaded_ = true;
 };

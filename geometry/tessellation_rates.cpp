@@ -337,10 +337,7 @@ bool RateFinder::measure(std::size_t face, Scratch& scratch) const {
       corners[k] = {Vec3d(sample.position), Vec3d(sample.normal)};
     }
     const SampledFacet facet(view_, origin_, corners, hard_edges(c, scratch.hard));
-    bool cut_for_shading = false;
-    for (std::size_t k = 0; k < 3; ++k)
-      cut_for_shading |= view_.pixels(origin_ + corners[k].position,
-                                      corners[(k + 1) % 3].position - corners[k].position) >= kShortestCutForShading;
+    const bool cut_for_shading = facet.longest() >= kShortestCutForShading;
     for (std::size_t m = 0; m < 4; ++m) {
       const FacetDeviation deviation = facet.at(scratch.samples[first + 4 * i + m], kMiddles[m]);
       const double shading = cut_for_shading ? deviation.shading * kShadingBetweenSamples : 0;

@@ -45,10 +45,18 @@ TEST(BicubicSpline, EndsAtItsBoundaryWithoutCurvatureAcross) {
       const auto curvature = [&](const std::array<float, 4>& u, const std::array<float, 4>& v) {
         return weighted_sum(control, u, v)[1];
       };
-      if (sides & kBottomSide) EXPECT_NEAR(curvature(along.value, start.second), 0, 1e-4f);
-      if (sides & kTopSide) EXPECT_NEAR(curvature(along.value, end.second), 0, 1e-4f);
-      if (sides & kLeftSide) EXPECT_NEAR(curvature(start.second, along.value), 0, 1e-4f);
-      if (sides & kRightSide) EXPECT_NEAR(curvature(end.second, along.value), 0, 1e-4f);
+      if (sides & kBottomSide) {
+        EXPECT_NEAR(curvature(along.value, start.second), 0, 1e-4f);
+      }
+      if (sides & kTopSide) {
+        EXPECT_NEAR(curvature(along.value, end.second), 0, 1e-4f);
+      }
+      if (sides & kLeftSide) {
+        EXPECT_NEAR(curvature(start.second, along.value), 0, 1e-4f);
+      }
+      if (sides & kRightSide) {
+        EXPECT_NEAR(curvature(end.second, along.value), 0, 1e-4f);
+      }
     }
   }
 }

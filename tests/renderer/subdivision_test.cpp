@@ -53,6 +53,23 @@ TEST(Subdivision, ASceneMakesACageOfAMesh) {
   EXPECT_TRUE(warnings.empty());
 }
 
+TEST(Subdivision, WhatNothingShowsIsNotTessellated) {
+  const auto array_bytes = [](const std::string& use) {
+    Warnings warnings;
+    const Scene scene = prepared(R"({"raytree": 1, "render": {"tessellation": {"rate": 64}},
+        "groups": {"blob": {"shapes": {"cube": {"type": "mesh", "subdivision": {}, )" +
+                                     kCube + R"(}}},
+                   "pair": {"shapes": {"a": {"type": "instance", "group": "blob"}}}},
+        "shapes": {"ball": {"type": "sphere"})" +
+                                     use + "}}",
+                                 warnings);
+    return scene.summary.array_bytes;
+  };
+  const std::uint64_t triangles = 6 * 2 * 64 * 64;
+  EXPECT_LT(array_bytes(""), triangles) << "neither the group nor the group that uses it is used";
+  EXPECT_GT(array_bytes(R"(, "it": {"type": "instance", "group": "pair"})"), 12 * triangles);
+}
+
 TEST(Subdivision, KeysAreStrict) {
   const auto refusal = [](const std::string& members) {
     try {
