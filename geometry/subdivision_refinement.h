@@ -16,8 +16,8 @@ enum class RefinedPoints : std::uint8_t {
 };
 
 /// Refines `levels` in [0, kMaxRefinementLevels] times. Faces without a surface (holes; at boundaries under
-/// BoundaryRule::none) are left out; texture coordinates and groups follow. Control points of a mesh with tags keep what
-/// is left of them, so that refining again goes on where this ended. Throws Error (bad_input) at `where` as
+/// BoundaryRule::none) are left out; texture coordinates and groups follow. Control points of a mesh with tags keep
+/// what is left of them, so that refining again goes on where this ended. Throws Error (bad_input) at `where` as
 /// check_cage() does, and where there would be more than 2^29 faces.
 PolygonMesh refine_uniformly(const PolygonMesh& mesh, const SubdivisionRules& rules, int levels, RefinedPoints points,
                              const SourceLocation& where, Warnings& warnings);

@@ -18,7 +18,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> kCommandNames = {"render", "info", "sheet", "convert", "bench", "scenes", "schema", "ocio"};
+const std::vector<std::string> kCommandNames = {"render", "info",   "sheet",  "convert",
+                                                "bench",  "scenes", "schema", "ocio"};
 const char* const kScene = "spheres-1980";
 
 /// A small render of a built-in scene into `file`.
