@@ -108,7 +108,7 @@ TEST(SubdivisionRules, WhatIsKeptOfPatchesChangesNoBit) {
   const auto kept = surface_of(star, {}), derived = surface_of(star, {}, 0);
   for (std::size_t face = 0; face < kept->face_count(); ++face) {
     if (kept->sides(face).empty()) continue;
-    for (const Vec2d at : {Vec2d(0, 0), Vec2d(0.01, 0.02), Vec2d(0.3, 0.7), Vec2d(1, 0.5)}) {
+    for (const Vec2d& at : {Vec2d(0, 0), Vec2d(0.01, 0.02), Vec2d(0.3, 0.7), Vec2d(1, 0.5)}) {
       const SurfaceSample a = test::sample_at(*kept, face, at), b = test::sample_at(*derived, face, at);
       EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
     }
