@@ -56,6 +56,7 @@ struct Material {
   Rgb shadow_transmission;        ///< of one crossing by a shadow ray: k_t, at most 1
   HighlightTable highlight_table;
 
+  bool is_plain = true;    ///< of a prepared scene: neither varied, its ambient neither, nor takes_on_the_way
   bool is_varied = false;  ///< diffuse varies or there is a bump: vary() has something to do
   std::shared_ptr<const Bump> bump;
 };

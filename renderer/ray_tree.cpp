@@ -27,6 +27,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+/// Whether any material can be other than plain.
+constexpr bool kAnyInvolved =
+    kFeatures.patterns || kFeatures.bumps || kFeatures.media || kFeatures.absorption || kFeatures.rough_surfaces;
+
 static_assert(kBatchSize <= std::size_t(1) << 16, "a ray's sample is a 16-bit number");
 
 /// What a batch spawns, before it joins the pending rays: by kind, so that neighbours in a packet run much the same
@@ -77,6 +81,7 @@ struct SampleTracer::State {
     if (tracks_paths()) pending_paths.reserve(pending.capacity());
     for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
     instanced = !scene.shapes->instances.empty();
+    ambients.resize(kBatchSize);
     if (shades_facets()) facets.emplace(scene);
     if (follows_shadows()) shadow_paths.emplace(scene, kBatchSize);
     if (tracks_media()) {
@@ -111,6 +116,17 @@ struct SampleTracer::State {
     return shading.surfaces.position[i] + (behind ? -normal : normal) * shading.surfaces.clearance[i];
   }
   void find_eye_media(std::span<const Vec2f> positions);
+  void add_background();
+  template <bool kInstances>
+  bool find_materials();
+  void involve_points(bool eye);
+  void attenuate_points();
+  Rgb plain_ambient(std::size_t i) const {
+    const Material& material = *shading.materials[i];
+    return material.ambient_as_diffuse ? shading.diffuse(i) : material.ambient.even;
+  }
+  template <class AmbientAt>
+  void add_ambient(AmbientAt&& ambient_at);
   bool passes(std::size_t i, const Hit& hit);
   Rgb escaping_weight(std::size_t i) const { return batch.weight(i) * media->transmitted(batch.media[i], kInfinity); }
   void add_lights();
@@ -127,7 +143,7 @@ struct SampleTracer::State {
   void cut(std::uint32_t sample, const Rgb& bound);
   void add_children(RayKind kind, SpawnedRays& children);
   void add_rays_on_paths();
-  void record_first_hit(std::size_t i, std::uint32_t object, std::uint32_t material);
+  void record_first_hits();
 
   const Scene& scene;
   const RenderSettings& settings;
@@ -148,7 +164,8 @@ struct SampleTracer::State {
   std::vector<std::uint32_t> points;
   std::size_t point_count = 0;
   ShadingBatch shading;
-  NewRays new_rays;  ///< of the batch under way
+  std::vector<Rgb> ambients;  ///< of the points' ambient light, where some material is not plain
+  NewRays new_rays;           ///< of the batch under way
 
   // Where surfaces are rough, paths beside rays:
   std::vector<TreePath> pending_paths;  ///< behind those of `pending` the batch's
@@ -256,66 +273,94 @@ void SampleTracer::State::add_children(RayKind kind, SpawnedRays& children) {
   }
 }
 
-/// Adds the background where rays missed, and finds the surfaces where they did not.
+/// Finds which rays hit and where, and adds the background for the others.
 void SampleTracer::State::find_hits() {
-  const bool media_matter = tracks_media();
   point_count = 0;
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    if (hits.geometry[i] != kNoGeometry) {
-      points[point_count++] = static_cast<std::uint32_t>(i);
-      continue;
-    }
-    // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
-    const Vec3f direction = rays.direction(i), poison = (rays.origin(i) + direction) * 0.0f;
-    results.radiance[batch.sample[i]] +=
-        (media_matter ? escaping_weight(i) : batch.weight(i)) * scene.background.along(direction) +
-        Rgb(poison.x + poison.y + poison.z);
-  }
+  for (std::size_t i = 0; i < rays.size; ++i)
+    if (hits.geometry[i] != kNoGeometry) points[point_count++] = static_cast<std::uint32_t>(i);
+  if (point_count < rays.size) add_background();
   prefetch_triangles(*scene.shapes);
   find_surfaces(*scene.shapes, rays, hits, wants_texture, shading.surfaces);
   if (shades_facets()) add_facets();
   shading.turn_to_rays(rays);
 }
 
-/// Looks up the materials of the hits, takes what the way to them took, and adds ambient light.
+void SampleTracer::State::add_background() {
+  const bool media_matter = tracks_media();
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    if (hits.geometry[i] != kNoGeometry) continue;
+    // A ray that is not finite misses everything: its sample becomes NaN, and so is counted and reported.
+    const Vec3f direction = rays.direction(i), poison = (rays.origin(i) + direction) * 0.0f;
+    const Rgb light = scene.background.along(direction);
+    results.radiance[batch.sample[i]] +=
+        (media_matter ? escaping_weight(i) : batch.weight(i)) * light + Rgb(poison.x + poison.y + poison.z);
+  }
+}
+
+/// Looks up the materials of the hits, takes what the way to them took, and adds ambient light. What a scene may lack
+/// has loops of its own, so that the others have no call in them.
 void SampleTracer::State::collect_points(bool eye) {
+  const bool plain = kFeatures.instances && instanced ? find_materials<true>() : find_materials<false>();
+  if (kAnyInvolved && !plain) involve_points(eye);
+  if (kFeatures.distance_attenuation && settings.distance_attenuation > 0) attenuate_points();
+  if (kAnyInvolved && !plain)
+    add_ambient([this](std::size_t i) { return ambients[i]; });
+  else
+    add_ambient([this](std::size_t i) { return plain_ambient(i); });
+  if (kFeatures.first_hit_channels && records.first_hits) record_first_hits();
+}
+
+/// Whether all materials of the batch are plain ones.
+template <bool kInstances>
+bool SampleTracer::State::find_materials() {
   const ShapeSet& shapes = *scene.shapes;
+  const Material* const materials = scene.materials.data();
+  const GeometryId* const geometries = hits.geometry;
+  const std::uint32_t* const primitives = hits.primitive;
+  bool plain = true;
+  for (const std::uint32_t i : batch_points()) {
+    std::uint32_t index;
+    if constexpr (kInstances)
+      index = scene.material_at(hits[i]);
+    else
+      index = scene.own_material(shapes, shapes.shape_of(geometries[i], primitives[i]), geometries[i], primitives[i]);
+    shading.set_material(i, materials[index]);
+    if (kAnyInvolved) plain &= materials[index].is_plain;
+  }
+  return plain;
+}
+
+/// What patterns, bumps, absorption and media do to the points. Those that separate nothing are points no longer.
+[[gnu::noinline]] void SampleTracer::State::involve_points(bool eye) {
   const SampleWindow window = eye ? eye_window : SampleWindow();
   std::size_t count = 0;
   for (const std::uint32_t i : batch_points()) {
-    const Hit hit = hits[i];
-    std::uint32_t object, material_index;
-    if (kFeatures.instances && instanced && hit.instance != kNoInstance) {
-      object = shapes.instances[hit.instance].object;
-      material_index = scene.material_at(hit);
-    } else {
-      object = shapes.shape_of(hit.geometry, hit.primitive);
-      material_index = scene.own_material(shapes, object, hit);
-    }
-    const Material& material = scene.materials[material_index];
-    shading.set_material(i, material);
-    Rgb ambient = material.ambient.even;
-    if ((kFeatures.patterns || kFeatures.bumps) && material.is_varied) {
+    const Material& material = *shading.materials[i];
+    if (material.is_varied) {
       ShadingPoint point = shading_point(i);
       vary(point, window);
       shading.set_varied(i, point);
     }
-    if (material.ambient_as_diffuse)
-      ambient = shading.diffuse(i);
-    else if (kFeatures.patterns && material.ambient.varies())
-      ambient = varied_ambient(shading_point(i), window);
-    if ((kFeatures.media || kFeatures.absorption || kFeatures.rough_surfaces) && material.takes_on_the_way &&
-        passes(i, hit))
-      continue;
-    if (kFeatures.distance_attenuation && settings.distance_attenuation > 0 && batch.level[i] > 1)
-      batch.set_weight(i, batch.weight(i) * segment_attenuation(static_cast<float>(settings.distance_attenuation),
-                                                                shading.surfaces.distance[i]));
-    results.radiance[batch.sample[i]] += batch.weight(i) * scene.ambient * ambient;
-    if (kFeatures.first_hit_channels && records.first_hits && batch.level[i] == 1)
-      record_first_hit(i, object, material_index);
+    ambients[i] = !material.ambient_as_diffuse && material.ambient.varies() ? varied_ambient(shading_point(i), window)
+                                                                            : plain_ambient(i);
+    if (material.takes_on_the_way && passes(i, hits[i])) continue;
     points[count++] = i;
   }
   point_count = count;
+}
+
+[[gnu::noinline]] void SampleTracer::State::attenuate_points() {
+  const auto rate = static_cast<float>(settings.distance_attenuation);
+  for (const std::uint32_t i : batch_points())
+    if (batch.level[i] > 1)
+      batch.set_weight(i, batch.weight(i) * segment_attenuation(rate, shading.surfaces.distance[i]));
+}
+
+template <class AmbientAt>
+void SampleTracer::State::add_ambient(AmbientAt&& ambient_at) {
+  const Rgb light = scene.ambient;
+  for (const std::uint32_t i : batch_points())
+    results.radiance[batch.sample[i]] += batch.weight(i) * light * ambient_at(i);
 }
 
 /// The sets of the chunk's eye rays. Parallel eye rays start in places of their own.
@@ -398,6 +443,7 @@ void SampleTracer::State::add_lights() {
 /// kFacets: some facets are shaded in a way of their own.
 template <bool kFacets>
 void SampleTracer::State::add_lights_to_points() {
+  const bool media_matter = tracks_media();
   for (const Light& light : scene.lights) {
     std::size_t count = 0;
     if (!kFacets) shading.meet(rays, light, settings.highlights);
@@ -422,7 +468,7 @@ void SampleTracer::State::add_lights_to_points() {
       shadow_rays.set(count, origin, local.direction, local.distance);
       shadow_samples[count] = batch.sample[i];
       shadow_light[count] = batch.weight(i) * shadowed;
-      if (tracks_media()) shadow_media[count] = boundaries[i].before;
+      if (media_matter) shadow_media[count] = boundaries[i].before;
       ++count;
     }
     if (count == 0) continue;
@@ -574,11 +620,20 @@ void SampleTracer::State::cut(std::uint32_t sample, const Rgb& bound) {
   ++statistics.branches_cut;
 }
 
-void SampleTracer::State::record_first_hit(std::size_t i, std::uint32_t object, std::uint32_t material) {
-  FirstHit& first = results.first_hits[batch.sample[i]];
-  // What the eye ray has passed through is in the distance already.
-  first = {first.distance + shading.surfaces.distance[i], shading.surfaces.shading_normal[i], shading.diffuse(i),
-           object + 1, material + 1};
+[[gnu::noinline]] void SampleTracer::State::record_first_hits() {
+  const ShapeSet& shapes = *scene.shapes;
+  for (const std::uint32_t i : batch_points()) {
+    if (batch.level[i] != 1) continue;
+    const Hit hit = hits[i];
+    const std::uint32_t object = instanced && hit.instance != kNoInstance
+                                     ? shapes.instances[hit.instance].object
+                                     : shapes.shape_of(hit.geometry, hit.primitive);
+    const auto material = static_cast<std::uint32_t>(shading.materials[i] - scene.materials.data());
+    FirstHit& first = results.first_hits[batch.sample[i]];
+    // What the eye ray has passed through is in the distance already.
+    first = {first.distance + shading.surfaces.distance[i], shading.surfaces.shading_normal[i], shading.diffuse(i),
+             object + 1, material + 1};
+  }
 }
 
 SampleTracer::SampleTracer(const Scene& scene, const SampleRecords& records, const std::atomic<bool>* stop)

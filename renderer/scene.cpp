@@ -328,6 +328,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
     material.free_reflections = free_reflections;
     material.special_optics |= free_reflections;
     material.takes_on_the_way = material.absorbs || tracked;
+    material.is_plain = !material.is_varied && !material.ambient.varies() && !material.takes_on_the_way;
     material.special_optics |= tracked;
   }
 

@@ -128,17 +128,19 @@ class Scene {
 
   /// Index into materials of what a hit shows: the instance's, or else the triangle's own, or else the shape's.
   std::uint32_t material_at(const Hit& hit) const {
-    if (hit.instance == kNoInstance) return own_material(*shapes, shapes->shape_of(hit.geometry, hit.primitive), hit);
+    if (hit.instance == kNoInstance)
+      return own_material(*shapes, shapes->shape_of(hit.geometry, hit.primitive), hit.geometry, hit.primitive);
     const Instance& instance = shapes->instances[hit.instance];
     const std::uint32_t all = shape_materials[instance.shape];
     if (all != kOwnMaterials) return all;
     const BoundedShapes& group = shapes->groups[instance.group];
-    return own_material(group, group.bounded_shape_of(hit.geometry, hit.primitive), hit);
+    return own_material(group, group.bounded_shape_of(hit.geometry, hit.primitive), hit.geometry, hit.primitive);
   }
 
   /// The same of a hit on `shape` of `list`, where no instance says otherwise.
-  std::uint32_t own_material(const BoundedShapes& list, ShapeId shape, const Hit& hit) const {
-    const std::uint32_t tag = list.tag_of(hit.geometry, hit.primitive);
+  std::uint32_t own_material(const BoundedShapes& list, ShapeId shape, GeometryId geometry,
+                             std::uint32_t primitive) const {
+    const std::uint32_t tag = list.tag_of(geometry, primitive);
     return tag != kNoTag ? tag : shape_materials[shape];
   }
 };
