@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "app/commands.h"
 #include "app/exit_status.h"
@@ -13,6 +12,7 @@
 #include "app/prepared_scene.h"
 #include "app/render_options.h"
 #include "app/suggestion.h"
+#include "geometry/angle.h"
 #include "renderer/scene.h"
 #include "renderer/scene_fields.h"
 
@@ -102,7 +102,7 @@ Totals totals(const SceneSummary& summary) {
   return sum;
 }
 
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kDegrees = 180 / kPi;
 
 Json json_of(const TessellationSummary& made) {
   Json json = {

@@ -15,13 +15,10 @@
 #include "app/render_options.h"
 #include "app/statistics_json.h"
 #include "renderer/film_image.h"
+#include "renderer/stopwatch.h"
 
 namespace raytree::app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 /// Thrown between steps once a signal has come; it passes for no Error.
 struct Interrupted {};
@@ -87,8 +84,7 @@ class RenderRun {
     if (options_.progress != ProgressMode::none)
       render_options.on_progress = [this](const RenderProgress& done) { progress_.update(done); };
     report_.before_trace_seconds = seconds_since_launch();
-    report_.first_ray_clock =
-        std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    report_.first_ray_clock = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
     // Loaded while the tracing runs, and no sooner: the dynamic loader's lock, held for a third of a second, would stop
     // OpenColorIO, TBB and Embree, which open libraries of their own as they start.
     for (const OutputFile& output : options_.outputs) preload_image_io(output.format);

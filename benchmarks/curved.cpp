@@ -6,10 +6,10 @@
 
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "benchmarks/rows.h"
+#include "geometry/angle.h"
 #include "geometry/embree_kinds.h"
 #include "geometry/patch_surface.h"
 #include "geometry/polygon_mesh.h"
@@ -36,7 +36,7 @@ double seconds_of(const std::function<void()>& work) {
 }
 
 Vec3f on_torus(double a, double b) {
-  const double turn = 2 * std::numbers::pi, r = 3 + std::cos(turn * b) + 0.02 * std::sin(40 * turn * a);
+  const double turn = 2 * kPi, r = 3 + std::cos(turn * b) + 0.02 * std::sin(40 * turn * a);
   return Vec3f(Vec3d(r * std::cos(turn * a), std::sin(turn * b), -r * std::sin(turn * a)));
 }
 

@@ -13,19 +13,16 @@
 #include "benchmarks/rows.h"
 #include "geometry/error.h"
 #include "geometry/terrain.h"
+#include "renderer/stopwatch.h"
 
 namespace raytree::benchmarks {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr double kTimeRatio = 1.25, kMemoryRatio = 1.15;
 constexpr double kMebibyte = 1024.0 * 1024.0;
 constexpr double kRoomForTheRest = 160 * kMebibyte;  ///< libraries and what is not the scene
 constexpr int kThreads = 2;
 constexpr std::int64_t kTriangles = 10'000'000;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 }  // namespace
 

@@ -23,6 +23,7 @@
 
 #include "geometry/mesh_file.h"
 #include "geometry/vertex_normals.h"
+#include "renderer/stopwatch.h"
 
 namespace {
 
@@ -125,10 +126,6 @@ std::string file_bytes(const PolygonMesh& mesh, Kind kind) {
   return out;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 struct Row {
   const char* name;
   const char* file;
@@ -188,7 +185,7 @@ int run(int repetitions, bool json) {
       Warnings warnings;
       const std::size_t before = held_bytes;
       peak_bytes = before;
-      const auto start = std::chrono::steady_clock::now();
+      const auto start = Clock::now();
       const PolygonMesh read = read_mesh_file(path, warnings);
       const double seconds = seconds_since(start);
       best = std::min(best, seconds);
@@ -227,7 +224,7 @@ int run(int repetitions, bool json) {
       copy.normal_corners = {};
       const std::size_t before = held_bytes;
       peak_bytes = before;
-      const auto start = std::chrono::steady_clock::now();
+      const auto start = Clock::now();
       compute_vertex_normals(copy, crease);
       best = std::min(best, seconds_since(start));
       peak = peak_bytes - before;

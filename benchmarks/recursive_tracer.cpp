@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 
+#include "geometry/ray_batch.h"
 #include "renderer/float_mode.h"
 #include "renderer/media.h"
 #include "renderer/shading.h"
@@ -19,7 +20,6 @@
 namespace raytree::benchmarks {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kColorTolerance = 2e-3f;
 constexpr double kFlippedShare = 1e-3;  ///< of pixels, and of rays
 

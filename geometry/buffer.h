@@ -43,4 +43,10 @@ class PaddedAllocator {
 template <class T>
 using Buffer = std::vector<T, PaddedAllocator<T>>;
 
+/// Bytes of an array's elements.
+template <class Array>
+std::size_t array_bytes(const Array& array) {
+  return array.size() * sizeof(array[0]);
+}
+
 }  // namespace raytree

@@ -18,7 +18,7 @@ using Ray = RayRecord::Ray;
 
 /// Rays per look at the clock: their packets stay in the first-level cache, and a look (some 25 ns) is under 1 % of
 /// what tracing them takes.
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kReplayBlock = 256;
 
 /// Rays that make a chunk: a few tiles' work.
 constexpr std::size_t kChunk = 16384;
@@ -34,12 +34,12 @@ void set_lane(Lanes& lanes, int i, const Ray& ray) {
 /// Room for one block's packets of any kind.
 template <int Width>
 struct Workspace {
-  static constexpr std::size_t kPackets = kBlock / Width;
+  static constexpr std::size_t kPackets = kReplayBlock / Width;
   alignas(64) int valid[kPackets][Width];
   alignas(64) typename PacketTypes<Width>::RayHit ray_hits[kPackets];
   alignas(64) typename PacketTypes<Width>::Ray rays[kPackets];
-  alignas(64) RTCRayHit single_ray_hits[kBlock];
-  alignas(64) RTCRay single_rays[kBlock];
+  alignas(64) RTCRayHit single_ray_hits[kReplayBlock];
+  alignas(64) RTCRay single_rays[kReplayBlock];
 };
 
 template <int Width>
@@ -189,8 +189,8 @@ void BareReplay::replay(std::size_t chunk, const ReplayCalls& calls, ReplayTally
   const Segment* segment = segments_.data() + chunks_[chunk].first_segment;
   for (std::size_t s = 0; s < chunks_[chunk].segment_count; ++s, ++segment) {
     const auto c = static_cast<std::size_t>(segment->ray_class);
-    for (std::size_t done = 0; done < segment->size; done += kBlock) {
-      const std::size_t at = segment->first + done, size = std::min(kBlock, segment->size - done);
+    for (std::size_t done = 0; done < segment->size; done += kReplayBlock) {
+      const std::size_t at = segment->first + done, size = std::min(kReplayBlock, segment->size - done);
       const std::uint8_t* stopped = stopped_.empty() ? nullptr : stopped_.data() + at;
       const auto run = state.wide ? replay_block<8> : replay_block<4>;
       tally.seconds[c] +=

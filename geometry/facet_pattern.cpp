@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 
 namespace raytree {
@@ -66,7 +66,7 @@ std::optional<Vec2d> seen_from(const SubfacePoint& point, int subface, int count
 /// An n-gon laid out as a regular polygon about 0, bilinear within each subface.
 class FlatPolygon {
  public:
-  explicit FlatPolygon(int count) : count_(count), step_(2 * std::numbers::pi / count) {}
+  explicit FlatPolygon(int count) : count_(count), step_(2 * kPi / count) {}
 
   Vec2d place(const SubfacePoint& p) const {
     const double u = p.at.x, v = p.at.y;

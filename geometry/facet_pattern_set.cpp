@@ -22,7 +22,7 @@ struct KeyHash {
 };
 using Numbers = std::unordered_map<Key, std::uint32_t, KeyHash>;
 
-constexpr std::size_t kBlock = 8192;  // faces
+constexpr std::size_t kBlockFaces = 8192;  // faces
 
 FaceDomain domain_of(const Key& key) { return static_cast<FaceDomain>(key[0]); }
 std::span<const std::uint16_t> rates_of(const Key& key) { return std::span(key).subspan(1); }
@@ -32,15 +32,15 @@ std::span<const std::uint16_t> rates_of(const Key& key) { return std::span(key).
 FacetPatternSet::FacetPatternSet(const ParametricSurface& surface, const TessellationRates& rates,
                                  std::size_t most_bytes)
     : numbers_(surface.face_count()) {
-  const std::size_t blocks = (numbers_.size() + kBlock - 1) / kBlock;
-  const auto block_end = [&](std::size_t block) { return std::min(numbers_.size(), (block + 1) * kBlock); };
+  const std::size_t blocks = (numbers_.size() + kBlockFaces - 1) / kBlockFaces;
+  const auto block_end = [&](std::size_t block) { return std::min(numbers_.size(), (block + 1) * kBlockFaces); };
   std::vector<std::vector<Key>> found(blocks);  // in the order of faces
   tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t block) {
     Numbers known;
     Key key, last;
     std::vector<std::uint16_t> face_rates;
     std::uint32_t number = 0;
-    for (std::size_t face = block * kBlock; face < block_end(block); ++face) {
+    for (std::size_t face = block * kBlockFaces; face < block_end(block); ++face) {
       key.clear();
       if (!surface.sides(face).empty()) {
         rates_of_face(surface, rates, face, face_rates);
@@ -67,7 +67,7 @@ FacetPatternSet::FacetPatternSet(const ParametricSurface& surface, const Tessell
       whole[block].push_back(place->second);
     }
   tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t block) {
-    for (std::size_t face = block * kBlock; face < block_end(block); ++face)
+    for (std::size_t face = block * kBlockFaces; face < block_end(block); ++face)
       numbers_[face] = whole[block][numbers_[face]];
   });
 

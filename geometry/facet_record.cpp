@@ -5,15 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/buffer.h"
 #include "geometry/facet_pattern.h"
 
 namespace raytree {
 namespace {
-
-template <class Array>
-std::size_t bytes(const Array& array) {
-  return array.size() * sizeof(array[0]);
-}
 
 class ParametricNormals final : public TrueSurface {
  public:
@@ -33,7 +29,9 @@ class ParametricNormals final : public TrueSurface {
     surface_->evaluate(face, {&place, 1}, {&sample, 1});
     return Vec3d(sample.normal);
   }
-  std::size_t memory_bytes() const override { return bytes(parameters_.faces) + bytes(parameters_.corners); }
+  std::size_t memory_bytes() const override {
+    return array_bytes(parameters_.faces) + array_bytes(parameters_.corners);
+  }
 
  private:
   std::shared_ptr<const ParametricSurface> surface_;
@@ -44,7 +42,7 @@ class ParametricNormals final : public TrueSurface {
 class QuadricNormals : public TrueSurface {
  public:
   explicit QuadricNormals(const PolygonMesh& mesh) : positions_(mesh.positions) {}
-  std::size_t memory_bytes() const override { return bytes(positions_); }
+  std::size_t memory_bytes() const override { return array_bytes(positions_); }
 
  protected:
   Vec3d point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v) const {
@@ -97,7 +95,7 @@ std::unique_ptr<TrueSurface> true_cone(const PolygonMesh& mesh, const Cone& cone
 }
 
 std::size_t FacetRecord::memory_bytes() const {
-  return bytes(starts) + bytes(corners) + bytes(normal_corners) + bytes(least_cosines) +
+  return array_bytes(starts) + array_bytes(corners) + array_bytes(normal_corners) + array_bytes(least_cosines) +
          (surface ? surface->memory_bytes() : 0);
 }
 

@@ -2,12 +2,11 @@
 
 #include <cmath>
 #include <initializer_list>
-#include <numbers>
+
+#include "geometry/angle.h"
 
 namespace raytree {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Directions across an axis: toward `first` at angle 0, to `second` at a right angle, counter-clockwise about the
 /// axis.

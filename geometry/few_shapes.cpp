@@ -5,8 +5,8 @@
 namespace raytree {
 namespace {
 
-constexpr std::size_t kBlock = 8;  ///< rays that are looked at together, one single-precision register of them
-static_assert(kBatchPadding % kBlock == 0, "the last block reads into the padding");
+constexpr std::size_t kBlockRays = 8;  ///< rays that are looked at together, one single-precision register of them
+static_assert(kBatchPadding % kBlockRays == 0, "the last block reads into the padding");
 
 /// Half of what is added to a ball's radius, as a share of the distance from the ray's origin to its center: rounding
 /// of the ray's closest point in single precision, at most 8 units of 2^-24 for the point itself and 4 for a direction
@@ -19,7 +19,7 @@ inline bool may_meet(const Imath::V4f& ball, const RayBatch& rays, std::size_t f
   const float *ox = rays.origin_x + first, *oy = rays.origin_y + first, *oz = rays.origin_z + first;
   const float *dx = rays.direction_x + first, *dy = rays.direction_y + first, *dz = rays.direction_z + first;
   int may = 0;
-  for (std::size_t i = 0; i < kBlock; ++i) {
+  for (std::size_t i = 0; i < kBlockRays; ++i) {
     const float x = ball.x - ox[i], y = ball.y - oy[i], z = ball.z - oz[i];
     const float along = x * dx[i] + y * dy[i] + z * dz[i];
     const float cx = dx[i] * along - x, cy = dy[i] * along - y, cz = dz[i] * along - z;
@@ -86,8 +86,8 @@ void intersect_few(const FewShapes& few, const RayBatch& rays, FewHits& hits) no
       }
     };
     if (!ball) return test(0, count);
-    for (std::size_t begin = 0; begin < count; begin += kBlock)
-      if (may_meet(*ball, rays, begin)) test(begin, std::min(begin + kBlock, count));
+    for (std::size_t begin = 0; begin < count; begin += kBlockRays)
+      if (may_meet(*ball, rays, begin)) test(begin, std::min(begin + kBlockRays, count));
   });
 }
 

@@ -13,7 +13,7 @@ namespace raytree {
 /// coordinates, magnified as inverse_error() says. A tracer inverts the matrix in float: each entry of the inverse is
 /// a difference of two products over a determinant (3 roundings of the products, 3 of the determinant's, 2 of the
 /// quotient); the inverse's translation, three products and two sums, rounds 4 times more, as does the ray's origin.
-inline constexpr float kInstanceError = 16 * 0x1p-24f;
+inline constexpr float kInstanceError = 16 * kRoundoff;
 
 /// A transform whose determinant is so much smaller than the products that it is made of cannot be inverted in single
 /// precision with an error below 2^-24 * 16 * kMostCancellation = 0.4 % of what it magnifies.

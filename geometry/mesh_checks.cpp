@@ -62,7 +62,7 @@ bool has_bad_face(const PolygonMesh& mesh, bool all_finite) {
   return false;
 }
 
-struct Tally {
+struct OddityTally {
   std::int64_t count = 0;
   std::size_t first = 0;
   void add(std::size_t element) {
@@ -70,7 +70,7 @@ struct Tally {
   }
 };
 
-void warn(const Tally& tally, const std::function<SourceLocation(std::size_t)>& locate, const char* message,
+void warn(const OddityTally& tally, const std::function<SourceLocation(std::size_t)>& locate, const char* message,
           Warnings& warnings) {
   if (tally.count > 0) warnings.push_back({locate(tally.first), message, tally.count});
 }
@@ -96,7 +96,7 @@ void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& 
       !any_of_parallel(mesh.positions.size(), [&](std::size_t i) { return !is_finite(mesh.positions[i]); });
 
   if (has_bad_face(mesh, all_finite)) {
-    Tally mended, dropped, not_finite;
+    OddityTally mended, dropped, not_finite;
     std::vector<std::uint32_t> kept;
     std::size_t read = 0, write = 0, face_write = 0, group = 0;
     bool only_triangles = true;
@@ -162,7 +162,7 @@ void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& 
   }
 
   if (!all_finite) {
-    Tally replaced;
+    OddityTally replaced;
     const auto good = std::find_if(mesh.positions.begin(), mesh.positions.end(), is_finite);
     const Vec3f substitute = good == mesh.positions.end() ? Vec3f(0, 0, 0) : *good;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
@@ -187,7 +187,7 @@ void complete_corners(PolygonMesh& mesh, const MeshLocator& locate, Warnings& wa
   };
 
   if (is_missing(mesh.normal_corners)) {
-    Tally faces_without;
+    OddityTally faces_without;
     const std::size_t faces = mesh.face_count();
     std::size_t first = 0;
     // Two rounds: the first counts, so that the array grows once.
@@ -217,7 +217,7 @@ void complete_corners(PolygonMesh& mesh, const MeshLocator& locate, Warnings& wa
     warn(faces_without, locate.face, "faces without normals, in a file with normals, take their own", warnings);
   }
   if (is_missing(mesh.texture_corners)) {
-    Tally faces_without;
+    OddityTally faces_without;
     const std::size_t faces = mesh.face_count();
     const std::size_t added = mesh.texture_coordinates.size();
     if (added + 1 >= kNoIndex) too_many();

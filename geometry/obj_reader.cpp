@@ -137,8 +137,6 @@ void count_face(const char* p, const char* end, Counts& counts) {
   counts.all_triangles = counts.all_triangles && corners == 3;
 }
 
-using Tally = ObjTally;
-
 /// The names in force from a face on; the names are places in the text, empty where the chunk has not set them.
 struct GroupChange {
   std::size_t face;
@@ -149,7 +147,7 @@ struct GroupChange {
 struct Findings {
   const char* error_place = nullptr;
   std::string error;
-  Tally extra_components, unknown, line_or_point, free_form, libraries_dropped;
+  ObjTally extra_components, unknown, line_or_point, free_form, libraries_dropped;
   ObjTagFindings tags;
   Bounds3d box;
   std::vector<GroupChange> changes;
@@ -525,7 +523,7 @@ class ObjParser {
       all.tags.edits.add(found.tags.edits);
       all.tags.unknown.add(found.tags.unknown);
     }
-    const auto warn = [&](const Tally& tally, const std::string& message) {
+    const auto warn = [&](const ObjTally& tally, const std::string& message) {
       if (tally.count > 0) warnings_.push_back({location(tally.first), message, tally.count});
     };
     const char* const end = text_.data() + text_.size();

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/newell.h"
 
 namespace raytree {
@@ -132,7 +132,7 @@ bool CageFactory::assignComponentTags(TopologyRefiner& refiner, const CageSource
           raytree::newell_normal(cage.mesh.positions.data(), cage.mesh.corners.data() + first, size).normalized();
       first += size;
     }
-    const double least_cosine = std::cos(*cage.rules.crease_angle * std::numbers::pi / 180);
+    const double least_cosine = std::cos(*cage.rules.crease_angle * raytree::kDegree);
     for (int edge = 0; edge < getNumBaseEdges(refiner); ++edge) {
       const IndexArray faces = getBaseEdgeFaces(refiner, edge);
       if (faces.size() == 2 &&

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <unordered_map>
+
+#include "geometry/angle.h"
 
 namespace raytree {
 namespace {
@@ -246,7 +247,7 @@ void PatchSurface::find_creases() {
       edges[sides_[face][side].edge].push_back({face, side});
       corners[sides_[face][side].vertex].push_back({face, side});
     }
-  const double least_cosine = std::cos(options_.crease_angle * std::numbers::pi / 180);
+  const double least_cosine = std::cos(options_.crease_angle * kDegree);
   // A normal that was not found, (0, 0, 0), has cosine 0 with all others and is thus nobody else's.
   const auto differ = [&](const Vec3d& a, const Vec3d& b) { return !(a.dot(b) >= least_cosine); };
   tbb::parallel_for(std::size_t(0), edges.size(), [&](std::size_t edge) {

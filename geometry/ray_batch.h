@@ -27,6 +27,8 @@ constexpr std::size_t padded_capacity(std::size_t capacity) { return (capacity /
 std::unique_ptr<std::byte[], AlignedDelete> batch_storage(std::size_t arrays, std::size_t padded);
 }  // namespace detail
 
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();  ///< end of a ray that nothing ends
+
 /// Rays, scene space (world relative to the scene's origin). Each starts at its origin (no least distance: origins are
 /// offset from the surface they leave) and ends at max_distance, infinity for none. Directions are unit.
 class RayBatch {

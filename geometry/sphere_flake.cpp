@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 
 namespace raytree {
@@ -19,7 +20,6 @@ constexpr double kScale = 1.0 / 3.0;  ///< child radius over parent radius
 
 /// Unit directions of the nine children about the axis +z, in the order of SPD's program.
 std::array<Vec3d, kChildren> child_directions() {
-  constexpr double kDegree = 3.14159265358979323846 / 180;
   const double sine = std::sqrt(2.0 / 3.0), cosine = std::sqrt(1.0 / 3.0);
   std::array<Vec3d, kChildren> directions;
   for (int turn = 0; turn < 3; ++turn) {

@@ -16,12 +16,12 @@ namespace raytree {
 /// (2 units), its offset once more, the intersector's differences, cross and dot products another few: false hits
 /// begin to show at 3 units and are gone at 4 (tests/renderer/self_intersection_test.cpp, 16 sizes and places). Four
 /// times that serves.
-inline constexpr float kSurfaceError = 16 * 0x1p-24f;
+inline constexpr float kSurfaceError = 16 * kRoundoff;
 
 /// The same for the part that a triangle's thinness magnifies: the rounding of the cross product of its edges, which
 /// turns the normal, times how far the triangle reaches. For a triangle of height h over an edge of length l it grows
 /// as l^2 / h, so slivers need it and other triangles hardly feel it.
-inline constexpr float kNormalError = 2 * 0x1p-24f;
+inline constexpr float kNormalError = 2 * kRoundoff;
 
 /// At most this share of a triangle's reach is added for its thinness.
 inline constexpr float kMostNormalError = 0x1p-9f;

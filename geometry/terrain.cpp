@@ -300,25 +300,27 @@ class Weaver {
   double lowest_ = 0, scale_ = 1;
 };
 
-[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::bad_input, {"", 0, "terrain"}, message); }
+[[noreturn]] void refuse_terrain(const std::string& message) {
+  throw Error(ErrorKind::bad_input, {"", 0, "terrain"}, message);
+}
 
 void check(const TerrainParameters& parameters) {
   // Beyond these, squares of lengths leave the range of floats somewhere between here and the image.
   constexpr double kLeastSize = 1e-12, kMostSize = 1e12;
   if (!(parameters.size >= kLeastSize && parameters.size <= kMostSize))
-    refuse(fmt::format("size must be from {} to {}, not {}", kLeastSize, kMostSize, parameters.size));
+    refuse_terrain(fmt::format("size must be from {} to {}, not {}", kLeastSize, kMostSize, parameters.size));
   if (!(parameters.height >= 0 && parameters.height <= kMostSize))
-    refuse(fmt::format("height must be from 0 to {}, not {}", kMostSize, parameters.height));
+    refuse_terrain(fmt::format("height must be from 0 to {}, not {}", kMostSize, parameters.height));
   if (!(parameters.roughness > 0 && parameters.roughness < 1))
-    refuse(fmt::format("roughness must be between 0 and 1, not {}", parameters.roughness));
+    refuse_terrain(fmt::format("roughness must be between 0 and 1, not {}", parameters.roughness));
 }
 
 }  // namespace
 
 TerrainGrid terrain_grid(std::int64_t triangles) {
   if (triangles < kLeastTerrainTriangles || triangles > kMostTerrainTriangles)
-    refuse(fmt::format("triangles must be from {} to {}, not {}", kLeastTerrainTriangles, kMostTerrainTriangles,
-                       triangles));
+    refuse_terrain(fmt::format("triangles must be from {} to {}, not {}", kLeastTerrainTriangles, kMostTerrainTriangles,
+                               triangles));
   TerrainGrid best;
   std::int64_t best_miss = std::numeric_limits<std::int64_t>::max();
   const auto square = std::int64_t(std::ceil(std::sqrt(double(triangles) / 2))) + 1;

@@ -154,8 +154,8 @@ void RateFinder::take(std::size_t face, const Demand& demand) {
 }
 
 /// The square of parameters from `corner` on, `extent` wide. sides: those along its bottom, right, top and left;
-/// kNoSide for none. together: both directions take the larger rate.
-constexpr std::size_t kNoSide = std::size_t(-1);
+/// kNoFaceSide for none. together: both directions take the larger rate.
+constexpr std::size_t kNoFaceSide = std::size_t(-1);
 void RateFinder::estimate_cells(std::size_t face, const Vec2d& corner, double extent, int cells, Scratch& scratch,
                                 const std::array<std::size_t, 4>& sides, bool together) const {
   const auto points = static_cast<std::size_t>(cells) + 1;
@@ -169,7 +169,7 @@ void RateFinder::estimate_cells(std::size_t face, const Vec2d& corner, double ex
   surface_.evaluate(face, scratch.parameters, scratch.samples);
   Demand& demand = scratch.demand;
   std::array<bool, 4> hard{};
-  for (std::size_t i = 0; i < 4; ++i) hard[i] = sides[i] != kNoSide && surface_.sides(face)[sides[i]].sharp_edge;
+  for (std::size_t i = 0; i < 4; ++i) hard[i] = sides[i] != kNoFaceSide && surface_.sides(face)[sides[i]].sharp_edge;
   for (std::size_t j = 0; j + 1 < points; ++j)
     for (std::size_t i = 0; i + 1 < points; ++i) {
       const SurfaceSample& p00 = scratch.samples[j * points + i];
@@ -191,7 +191,7 @@ void RateFinder::estimate_cells(std::size_t face, const Vec2d& corner, double ex
       // A side takes the rate along it of the cells there; a hard one also that of its own outline.
       const auto raise_side = [&](bool there, std::size_t side, double rate, const SurfaceSample& a,
                                   const SurfaceSample& b, const Vec3d& along, const Vec3d& second) {
-        if (!there || sides[side] == kNoSide) return;
+        if (!there || sides[side] == kNoFaceSide) return;
         demand.raise_side(sides[side], rate);
         if (hard[side]) demand.raise_side(sides[side], std::sqrt(size(a, b, second, along)));
       };
@@ -253,7 +253,7 @@ void RateFinder::estimate(std::size_t face, Scratch& scratch) const {
       case FaceDomain::quad_subfaces:
         for (std::size_t i = 0; i < sides; ++i)
           estimate_cells(face, subface_corner(sides, i), 0.5, (cells + 1) / 2, scratch,
-                         {i, kNoSide, kNoSide, (i + sides - 1) % sides}, true);
+                         {i, kNoFaceSide, kNoFaceSide, (i + sides - 1) % sides}, true);
         break;
     }
   };

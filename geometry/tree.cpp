@@ -6,17 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <vector>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/surface.h"
 
 namespace raytree {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kTurn = 2 * kPi;
 constexpr double kGoldenAngle = 2.399963229728653;  ///< successive branches stand so far round their parent
 
 class Random {
@@ -160,18 +160,20 @@ Skeleton conifer(const TreeParameters& parameters) {
   return skeleton;
 }
 
-[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::bad_input, {"", 0, "tree"}, message); }
+[[noreturn]] void refuse_tree(const std::string& message) {
+  throw Error(ErrorKind::bad_input, {"", 0, "tree"}, message);
+}
 
 Skeleton checked_skeleton(const TreeParameters& parameters) {
   static constexpr double kLeastLength = 1e-12, kMostLength = 1e12;
   const auto check_length = [](const char* what, double length) {
     if (!(length >= kLeastLength && length <= kMostLength))
-      refuse(fmt::format("{} must be from {} to {}, not {}", what, kLeastLength, kMostLength, length));
+      refuse_tree(fmt::format("{} must be from {} to {}, not {}", what, kLeastLength, kMostLength, length));
   };
   check_length("height", parameters.height);
   check_length("leaf_size", parameters.leaf_size);
   if (parameters.leaves < 1 || parameters.leaves > kMostTreeLeaves)
-    refuse(fmt::format("leaves must be from 1 to {}, not {}", kMostTreeLeaves, parameters.leaves));
+    refuse_tree(fmt::format("leaves must be from 1 to {}, not {}", kMostTreeLeaves, parameters.leaves));
   return parameters.form == TreeForm::broadleaf ? broadleaf(parameters) : conifer(parameters);
 }
 

@@ -14,7 +14,7 @@
 namespace raytree {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // faces that one task cuts
+constexpr std::size_t kFacesPerTask = 4096;  // faces that one task cuts
 
 /// Twice an area below this part of the polygon's extent squared counts as none. Coordinates are floats, their
 /// differences and products in double: an orientation is wrong by at most a few 2^-52 of the extent squared; four
@@ -295,11 +295,11 @@ TriangleMesh triangulate(PolygonMesh&& mesh, const SourceLocation& where, Warnin
     return result;
   }
 
-  const std::size_t blocks = (faces + kBlock - 1) / kBlock;
+  const std::size_t blocks = (faces + kFacesPerTask - 1) / kFacesPerTask;
   std::vector<std::size_t> corner_starts(blocks + 1, 0), triangle_starts(blocks + 1, 0);
   for (std::size_t block = 0; block < blocks; ++block) {
     std::size_t corners = 0, triangles = 0;
-    for (std::size_t face = block * kBlock; face < std::min(faces, (block + 1) * kBlock); ++face) {
+    for (std::size_t face = block * kFacesPerTask; face < std::min(faces, (block + 1) * kFacesPerTask); ++face) {
       corners += mesh.face_sizes[face];
       triangles += mesh.face_sizes[face] < 3 ? 0 : mesh.face_sizes[face] - 2;
     }
@@ -325,7 +325,7 @@ TriangleMesh triangulate(PolygonMesh&& mesh, const SourceLocation& where, Warnin
       }
       result.triangle_faces[triangle++] = static_cast<std::uint32_t>(face);
     };
-    for (std::size_t face = block * kBlock; face < std::min(faces, (block + 1) * kBlock); ++face) {
+    for (std::size_t face = block * kFacesPerTask; face < std::min(faces, (block + 1) * kFacesPerTask); ++face) {
       const std::size_t size = mesh.face_sizes[face];
       if (size == 3) {
         write(face, {0, 1, 2});

@@ -8,6 +8,8 @@
 
 namespace raytree {
 
+inline constexpr float kRoundoff = 0x1p-24f;  ///< half an ulp of single precision, relative
+
 using Vec2f = Imath::V2f;
 using Vec3f = Imath::V3f;
 using Vec2d = Imath::V2d;

@@ -9,15 +9,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "geometry/angle.h"
 #include "geometry/newell.h"
 
 namespace raytree {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // vertices or faces that one task takes
+constexpr std::size_t kItemsPerTask = 4096;  // vertices or faces that one task takes
 
 /// Added to the cosine of a crease angle: unit normals in float are off by up to 1e-7, the product of two of them by
 /// 2e-7 or less; faces that meet at exactly the crease angle count as smooth.
@@ -54,8 +54,9 @@ Vec3f unit_face_normal(const PolygonMesh& mesh, std::size_t begin, std::size_t e
 
 template <class Function>
 void for_each_block(std::size_t count, const Function& function) {
-  tbb::parallel_for(std::size_t(0), (count + kBlock - 1) / kBlock,
-                    [&](std::size_t block) { function(block, block * kBlock, std::min(count, (block + 1) * kBlock)); });
+  tbb::parallel_for(std::size_t(0), (count + kItemsPerTask - 1) / kItemsPerTask, [&](std::size_t block) {
+    function(block, block * kItemsPerTask, std::min(count, (block + 1) * kItemsPerTask));
+  });
 }
 
 /// Phong 1973, eq. 4.1: the sum of the cross products of successive edges.
@@ -139,7 +140,7 @@ class VertexFan {
       const Vec3d cross = to_after.cross(to_before);
       double angle = std::atan2(cross.length(), to_after.dot(to_before));
       // The inner angle of a reflex corner is beyond pi: its edges turn against the face's normal.
-      if (cross.dot(Vec3d(normal)) < 0) angle = 2 * std::numbers::pi - angle;
+      if (cross.dot(Vec3d(normal)) < 0) angle = 2 * kPi - angle;
       Corner corner;
       corner.normal = normal;
       corner.angle = normal.length2() > 0 ? angle : 0.0;
@@ -288,7 +289,7 @@ void compute_vertex_normals(PolygonMesh& mesh, const NormalRules& rules) {
   for (std::size_t corner = 0; corner < corner_count; ++corner)
     around[starts[mesh_faces.vertex(mesh.corners[corner]) + 1]++] = static_cast<std::uint32_t>(corner);
 
-  if (rules.crease_angle >= std::numbers::pi) {
+  if (rules.crease_angle >= kPi) {
     mesh.normals.resize(vertex_count);
     for_each_block(vertex_count, [&](std::size_t, std::size_t first, std::size_t last) {
       VertexFan fan(mesh_faces, -1);
@@ -302,7 +303,7 @@ void compute_vertex_normals(PolygonMesh& mesh, const NormalRules& rules) {
   }
 
   const double crease_cosine = std::cos(std::max(rules.crease_angle, 0.0)) - kCosineTolerance;
-  const std::size_t blocks = (vertex_count + kBlock - 1) / kBlock;
+  const std::size_t blocks = (vertex_count + kItemsPerTask - 1) / kItemsPerTask;
   std::vector<std::vector<Vec3f>> block_normals(blocks);
   mesh.normal_corners.resize(corner_count);
   for_each_block(vertex_count, [&](std::size_t block, std::size_t first, std::size_t last) {
@@ -340,13 +341,13 @@ void compute_vertex_normals(PolygonMesh& mesh, const NormalRules& rules) {
   }
   for_each_block(corner_count, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t c = first; c < last; ++c)
-      mesh.normal_corners[c] += block_starts[mesh_faces.vertex(mesh.corners[c]) / kBlock];
+      mesh.normal_corners[c] += block_starts[mesh_faces.vertex(mesh.corners[c]) / kItemsPerTask];
   });
 }
 
 std::int64_t normalize_vertex_normals(PolygonMesh& mesh) {
   const std::size_t count = mesh.normals.size();
-  std::vector<std::vector<std::uint32_t>> block_bad((count + kBlock - 1) / kBlock);
+  std::vector<std::vector<std::uint32_t>> block_bad((count + kItemsPerTask - 1) / kItemsPerTask);
   for_each_block(count, [&](std::size_t block, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Vec3d normal(mesh.normals[i]);

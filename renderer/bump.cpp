@@ -1,8 +1,8 @@
 #include "renderer/bump.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/surface.h"
 
 namespace raytree {
@@ -21,9 +21,9 @@ Height Bump::height(const Vec3f& position, double width) const {
   Height height;
   // A wave along `toward`, 1 long and from -1 to 1 high, `phase` periods on.
   const auto wave = [&](double phase, const Vec3d& toward) {
-    const double angle = 2 * std::numbers::pi * (phase - std::floor(phase));
+    const double angle = 2 * kPi * (phase - std::floor(phase));
     const double weight = octave_weight(width, 0.5);
-    height = {weight * std::sin(angle), toward * (weight * 2 * std::numbers::pi * std::cos(angle))};
+    height = {weight * std::sin(angle), toward * (weight * 2 * kPi * std::cos(angle))};
   };
   switch (kind_) {
     case BumpDescription::Kind::noise:

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/surface.h"
 
@@ -39,8 +39,7 @@ Camera::Camera(const CameraDescription& description, int width, int height, cons
     throw Error(ErrorKind::bad_input, where, "camera field of view must lie between 0 and 180 degrees");
   if (!perspective_ && !(description.height > 0 && std::isfinite(description.height)))
     throw Error(ErrorKind::bad_input, where, "camera window height must be larger than 0");
-  const double window_height =
-      perspective_ ? 2 * std::tan(description.field_of_view * std::numbers::pi / 360) : description.height;
+  const double window_height = perspective_ ? 2 * std::tan(description.field_of_view * kPi / 360) : description.height;
   const double pixel = window_height / height;
   position_ = Vec3f(description.position - scene_origin);
   forward_ = Vec3f(forward);

@@ -17,7 +17,7 @@ double rec1886_encoded(double linear) { return std::pow(linear, 1 / 2.4); }
 double crt_encoded(double linear) { return std::pow(linear, 0.33); }  // Phong 1973, App. I
 double shade_as_brightness(double shade) { return std::pow(10, 2 * (shade - 1)); }
 
-struct Encoding {
+struct EncodedDisplay {
   const char* display;
   double (*encoded)(double);
 };
@@ -38,8 +38,9 @@ std::vector<DisplayCheck> check_builtin_display() {
       // ODT common). The published curve is fitted, so the tolerance is one step of 8 bits.
       {"sRGB", "ACES SDR", .18, srgb_encoded(std::pow(0.1, 0.9811)), 0, 1.0 / 255, false},
   };
-  for (const Encoding& encoding :
-       {Encoding{"sRGB", srgb_encoded}, Encoding{"Rec.1886", rec1886_encoded}, Encoding{"CRT", crt_encoded}}) {
+  for (const EncodedDisplay& encoding :
+       {EncodedDisplay{"sRGB", srgb_encoded}, EncodedDisplay{"Rec.1886", rec1886_encoded},
+        EncodedDisplay{"CRT", crt_encoded}}) {
     for (const double input : {0.0, 0.002, 0.18, 0.5, 1.0, 4.0}) {
       const double shown = input > 1 ? 1 : input;
       rows.push_back({encoding.display, "Standard", input, encoding.encoded(shown), 0, kTolerance, false});

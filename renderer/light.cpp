@@ -1,9 +1,9 @@
 #include "renderer/light.h"
 
+#include "geometry/angle.h"
+
 namespace raytree {
 namespace {
-
-constexpr double kRadians = 3.14159265358979323846 / 180;
 
 /// Cosines nearer than this cannot be told apart in float: such a cone has a hard border.
 constexpr double kLeastCosineSpan = 1e-6;
@@ -25,7 +25,7 @@ void place_light(const SpotLight& kind, const Vec3d& scene_origin, Light& light)
   light.even = false;
   light.has_cone = true;
   light.axis = Vec3f(unit(kind.direction));
-  const double border = std::cos(kind.angle * kRadians), full = std::cos(kind.inner_angle * kRadians);
+  const double border = std::cos(kind.angle * kDegree), full = std::cos(kind.inner_angle * kDegree);
   light.border_cosine = static_cast<float>(border);
   light.inverse_cosine_span = static_cast<float>(1 / std::max(full - border, kLeastCosineSpan));
 }

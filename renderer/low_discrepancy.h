@@ -5,8 +5,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/vec.h"
 
 namespace raytree {
@@ -74,7 +74,7 @@ inline Vec2d low_discrepancy_point(std::uint32_t index, std::uint32_t key) {
 /// A pair of independent standard normal deviates from a point of (0, 1)^2 (Box and Muller 1958). Rings and sectors of
 /// the plane are boxes of the square, so what is even there is even here.
 inline Vec2d normal_deviates(const Vec2d& point) {
-  const double radius = std::sqrt(-2 * std::log(point.x)), angle = 2 * std::numbers::pi * point.y;
+  const double radius = std::sqrt(-2 * std::log(point.x)), angle = 2 * kPi * point.y;
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 

@@ -4,14 +4,11 @@
 
 #include <algorithm>
 
+#include "geometry/angle.h"
 #include "renderer/bump.h"
 
 namespace raytree {
-namespace {
-
-constexpr double kRadians = 3.14159265358979323846 / 180;
-
-}  // namespace
+namespace {}  // namespace
 
 std::string material_problem(const MaterialDescription& description) {
   if (description.conductor && !is_black(description.transmission))
@@ -35,7 +32,7 @@ Material make_material(const MaterialDescription& description, bool fresnel, con
     material.tabled_highlight = true;
     material.highlight = Rgb();
     for (const AngleWeight& point : table) {
-      material.highlight_table.points.push_back({static_cast<float>(point.angle * kRadians), point.weight});
+      material.highlight_table.points.push_back({static_cast<float>(point.angle * kDegree), point.weight});
       material.highlight = max(material.highlight, point.weight);
     }
   }

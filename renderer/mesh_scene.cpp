@@ -7,9 +7,9 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 #include <variant>
 
+#include "geometry/angle.h"
 #include "geometry/mesh_file.h"
 #include "geometry/patch_reader.h"
 #include "geometry/patch_surface.h"
@@ -24,7 +24,7 @@ namespace {
 constexpr double kFieldOfView =
     28;  // degrees, vertical: a portrait lens; wider ones distort an object that fills the frame
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+double radians(double degrees) { return degrees * kDegree; }
 
 /// The view's axes; the camera looks along `forward`.
 struct ViewAxes {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/mapped_file.h"
 #include "geometry/text_scanning.h"
 #include "renderer/scene_fields.h"
@@ -205,8 +205,8 @@ class NffParser {
     if ((camera.target - camera.position).length() == 0) words_.fail("from and at are the same point");
     // The angle lies between the centers of the top and the bottom row.
     const double rows = scene_.image.height;
-    const double half_height = std::tan(angle * std::numbers::pi / 360) * (rows > 1 ? rows / (rows - 1) : 1);
-    camera.field_of_view = std::atan(half_height) * 360 / std::numbers::pi;
+    const double half_height = std::tan(angle * kPi / 360) * (rows > 1 ? rows / (rows - 1) : 1);
+    camera.field_of_view = std::atan(half_height) * 360 / kPi;
     scene_.cameras = {camera};
   }
 

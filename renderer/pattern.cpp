@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <variant>
 
+#include "geometry/angle.h"
 #include "renderer/noise.h"
 #include "renderer/square_wave.h"
 
@@ -46,12 +46,12 @@ struct Stripes {
     }
     // A sine's mean over an interval is the sine at its middle, less high.
     const auto height = [](double w) {
-      const double angle = std::numbers::pi * 0.5 * w;
+      const double angle = kPi * 0.5 * w;
       if (!(std::abs(angle) < 1e6)) return 0.0;
       return std::abs(angle) < 1e-4 ? 1.0 : std::sin(angle) / angle;
     };
     const double phase = x - 2 * std::floor(x * 0.5);
-    return 0.5 + 0.5 * std::sin(std::numbers::pi * phase) * height(width) * height(other);
+    return 0.5 + 0.5 * std::sin(kPi * phase) * height(width) * height(other);
   }
 };
 

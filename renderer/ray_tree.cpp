@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "geometry/ray_batch.h"
 #include "geometry/surface_batch.h"
 #include "renderer/facet_shading.h"
 #include "renderer/features.h"
@@ -17,15 +18,10 @@
 #include "renderer/shading.h"
 #include "renderer/shading_batch.h"
 #include "renderer/shadow_path.h"
+#include "renderer/stopwatch.h"
 
 namespace raytree {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Whether any material can be other than plain.
 constexpr bool kAnyInvolved =

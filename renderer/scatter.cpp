@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
+
+#include "geometry/angle.h"
 
 namespace raytree {
 namespace {
@@ -80,7 +81,7 @@ Ground ground_at(const TriangleMesh& terrain, const TerrainGrid& grid, double u,
 std::vector<Matrix44d> scattered(const ScatterShape& scatter, const TriangleMesh& terrain, const TerrainGrid& grid) {
   std::vector<Matrix44d> uses;
   const std::uint64_t seed = mixed(scatter.seed + 0x632be59bd9b4e019u);
-  const double least_cosine = std::cos(scatter.steepest * (std::numbers::pi / 180));
+  const double least_cosine = std::cos(scatter.steepest * kDegree);
   // Powers of the inverse of the plastic number, the root of x^3 = x + 1.
   constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
   // Half the edge of a place's share of the square.
@@ -102,7 +103,7 @@ std::vector<Matrix44d> scattered(const ScatterShape& scatter, const TriangleMesh
       if (share < scatter.clearings || scatter.clearings >= 1) continue;
     }
     const double scale = scatter.least_scale + (scatter.largest_scale - scatter.least_scale) * random(key, 4);
-    const double turn = 2 * std::numbers::pi * random(key, 5);
+    const double turn = 2 * kPi * random(key, 5);
     const double sine = scale * std::sin(turn), cosine = scale * std::cos(turn);
     const Vec3d& p = ground.point;
     uses.push_back(

@@ -13,14 +13,11 @@
 #include "renderer/scene_fields.h"
 #include "renderer/shape_assembly.h"
 #include "renderer/shape_shading.h"
+#include "renderer/stopwatch.h"
 #include "renderer/tracer_choice.h"
 
 namespace raytree {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 SourceLocation place_of(const SceneDescription& scene, const MaterialDescription& material) {
   return {scene.name, 0, "materials." + material.name};
@@ -290,7 +287,7 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 
 Scene prepare(SceneDescription description, const PrepareOptions& options, Warnings& warnings) {
   Scene scene;
-  auto start = std::chrono::steady_clock::now();
+  auto start = Clock::now();
   const CameraDescription camera = chosen_camera(description, options.camera);
   scene.shapes =
       std::make_unique<ShapeSet>(assemble_shapes(description, camera.position, options, scene.summary, warnings));
@@ -360,7 +357,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   if (!options.build) return scene;
 
   if (options.on_phase) options.on_phase(building_text(scene.summary));
-  start = std::chrono::steady_clock::now();
+  start = Clock::now();
   HierarchyDemand demand;
   demand.primitives = primitive_count(scene.summary);
   demand.rays = expected_rays(scene.description);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "renderer/groups.h"
 #include "renderer/material.h"
 #include "renderer/suggestion.h"
@@ -111,7 +111,7 @@ std::pair<double, double> sine_and_cosine(double degrees) {
   if (within == 90) return {1, 0};
   if (within == -90) return {-1, 0};
   if (std::abs(within) == 180) return {0, -1};
-  const double radians = within * (std::numbers::pi / 180);
+  const double radians = within * kDegree;
   return {std::sin(radians), std::cos(radians)};
 }
 

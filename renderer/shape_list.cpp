@@ -4,11 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/faceted_quadric.h"
 #include "geometry/mesh_file.h"
 #include "geometry/patch_surface.h"
@@ -86,7 +86,7 @@ void apply_normal_source(PolygonMesh& mesh, const MeshShape& shape, const Source
   }
   mesh.normals = {};
   mesh.normal_corners = {};
-  compute_vertex_normals(mesh, shape.crease_angle * std::numbers::pi / 180);
+  compute_vertex_normals(mesh, shape.crease_angle * kDegree);
 }
 
 /// Fills the assembly of one list of shapes.

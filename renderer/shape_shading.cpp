@@ -1,8 +1,8 @@
 #include "renderer/shape_shading.h"
 
-#include <numbers>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/vertex_normals.h"
 
@@ -33,7 +33,7 @@ NormalRules rules_of(const Smoothing& normals) {
     }
     return NormalMethod::angle;
   };
-  return {method(), normals.crease_angle * std::numbers::pi / 180, normals.across_pieces};
+  return {method(), normals.crease_angle * kDegree, normals.across_pieces};
 }
 
 bool wants_averages(const ShapeDescription& shape) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "geometry/angle.h"
 #include "geometry/instance_transform.h"
 #include "geometry/surface.h"
 #include "renderer/render.h"
@@ -16,8 +16,7 @@ double cross(const Vec2d& a, const Vec2d& b) { return a.x * b.y - a.y * b.x; }
 
 /// Round outlines are polygons of so many corners, on a circle so much larger that they have its area.
 constexpr int kRoundCorners = 16;
-const double kRoundScale =
-    std::sqrt(2 * std::numbers::pi / kRoundCorners / std::sin(2 * std::numbers::pi / kRoundCorners));
+const double kRoundScale = std::sqrt(2 * kPi / kRoundCorners / std::sin(2 * kPi / kRoundCorners));
 
 /// Gathers the image of one object point by point, for as long as it may be small.
 class OutlineBuilder {
@@ -45,7 +44,7 @@ class OutlineBuilder {
     const Vec3d any = std::abs(axis.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
     const Vec3d u = unit(axis.cross(any)), v = axis.cross(u);
     for (int i = 0; i < kRoundCorners; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kRoundCorners, r = radius * kRoundScale;
+      const double angle = 2 * kPi * i / kRoundCorners, r = radius * kRoundScale;
       if (!add(center + u * (r * std::cos(angle)) + v * (r * std::sin(angle)))) return false;
     }
     return true;

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/tessellation.h"
 #include "geometry/tessellation_rates.h"
 #include "renderer/camera.h"
@@ -56,7 +56,7 @@ TessellationView world_view(const CameraDescription& camera, const ImageDescript
   view.forward = (camera.target - camera.position).normalized();
   view.right = view.forward.cross(camera.up).normalized();
   view.up = view.right.cross(view.forward);
-  const double height = perspective ? 2 * std::tan(camera.field_of_view * std::numbers::pi / 360) : camera.height;
+  const double height = perspective ? 2 * std::tan(camera.field_of_view * kPi / 360) : camera.height;
   view.pixel = height / image.height;
   view.half_width = image.width / 2.0;
   view.half_height = image.height / 2.0;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr bool kSanitized = kAddressSanitized;  // shadow memory and quarantine are no memory of the program
 
-constexpr double kLongest = 10;  // seconds for a small file, on a machine busy with other tests
+constexpr double kLongestRefusal = 10;  // seconds for a small file, on a machine busy with other tests
 
 std::uint64_t memory_limit(std::uint64_t file_bytes) { return 4 * file_bytes + (std::uint64_t(256) << 20); }
 
@@ -46,7 +46,7 @@ void judge_folder(const std::string& folder, const std::map<std::string, std::st
     const std::string path = file.string();
     SCOPED_TRACE(path);
     const ProgramResult result = judged(path);
-    EXPECT_LT(result.seconds, kLongest);
+    EXPECT_LT(result.seconds, kLongestRefusal);
     most = std::max(most, result.peak_memory_bytes);
     const auto known = accepted.find(file.filename().string());
     if (known == accepted.end()) {
@@ -136,7 +136,7 @@ TEST(MalformedInput, NumbersThatPromiseMoreThanTheFileHolds) {
     const std::string path = folder.path(c.name);
     write_text(path, c.text);
     const ProgramResult result = judged(path);
-    EXPECT_LT(result.seconds, kLongest);
+    EXPECT_LT(result.seconds, kLongestRefusal);
     expect_refused(result, path);
     EXPECT_TRUE(contains(result.err, c.part)) << result.err;
   }

@@ -7,10 +7,10 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "geometry/angle.h"
 #include "geometry/parametric_surface.h"
 
 namespace raytree::test {
@@ -73,7 +73,7 @@ inline constexpr double kTorusRadius = 2, kTubeRadius = 0.75;
 /// around x across quads, both at least 1; v goes around the tube.
 inline AnalyticSurface torus(std::uint32_t around, std::uint32_t across) {
   AnalyticSurface surface(std::size_t(around) * across, [=](std::size_t face, Vec2d p) {
-    constexpr double kTurn = 2 * std::numbers::pi;
+    constexpr double kTurn = 2 * kPi;
     const double du = kTurn / around, dv = kTurn / across;
     const double u = (double(face % around) + p.x) * du, v = (double(face / around) + p.y) * dv;
     const double reach = kTorusRadius + kTubeRadius * std::cos(v);
@@ -94,10 +94,8 @@ inline AnalyticSurface torus(std::uint32_t around, std::uint32_t across) {
                                           {n + wrapped(i, j), wrapped(i, j + 1), true, false, false}});
   return surface;
 }
-inline double torus_area() { return 4 * std::numbers::pi * std::numbers::pi * kTorusRadius * kTubeRadius; }
-inline double torus_volume() {
-  return 2 * std::numbers::pi * std::numbers::pi * kTorusRadius * kTubeRadius * kTubeRadius;
-}
+inline double torus_area() { return 4 * kPi * kPi * kTorusRadius * kTubeRadius; }
+inline double torus_volume() { return 2 * kPi * kPi * kTorusRadius * kTubeRadius * kTubeRadius; }
 
 /// The unit sphere as eight triangles, one an octant, projected from the octahedron.
 inline AnalyticSurface octant_sphere() {
@@ -135,7 +133,7 @@ inline AnalyticSurface saddle(double height) {
 /// The disc of radius 1 in x and z as an n-gon cut in quads: where subface `corner` has (u, v), in the order of the
 /// rim. A Coons patch between two arcs of the rim and two spokes; of its terms these remain, for spokes end at 0.
 inline Vec2d on_disc(std::uint32_t sides, int corner, double u, double v) {
-  const double step = 2 * std::numbers::pi / sides;
+  const double step = 2 * kPi / sides;
   const auto rim = [&](double ahead) {
     const double angle = (corner + ahead / 2) * step;
     return Vec2d(std::cos(angle), -std::sin(angle));
@@ -181,7 +179,7 @@ inline AnalyticSurface dome(std::uint32_t sides, double height) {
 
 /// Radius 1, y from -1 to 1, `sides` quads around; the ends are n-gons cut in quads. Rims are sharp.
 inline AnalyticSurface cylinder(std::uint32_t sides) {
-  const double step = 2 * std::numbers::pi / sides;
+  const double step = 2 * kPi / sides;
   const auto rim = [](double angle) { return Vec3d(std::cos(angle), 0, -std::sin(angle)); };
   AnalyticSurface surface(2 * std::size_t(sides), [=](std::size_t face, Vec2d p) {
     SurfaceSample s;

@@ -10,14 +10,13 @@
 #include <random>
 
 #include "geometry/error.h"
+#include "geometry/ray_batch.h"
 #include "geometry/surface.h"
 
 namespace raytree {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr double kRoundoff = 0x1p-24;
 
 class Random {
  public:

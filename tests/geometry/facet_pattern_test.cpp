@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/facet_pattern_set.h"
 #include "tests/geometry/analytic_surfaces.h"

@@ -8,14 +8,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <random>
 #include <vector>
 
+#include "geometry/angle.h"
+
 namespace raytree {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 using Polygon = std::vector<Vec3f>;
 using Weigher = std::function<void(const Polygon&, const Vec3f&, std::vector<float>&)>;
@@ -46,7 +45,7 @@ Polygon regular(int count, double turn, double radius = 1) {
 
 /// The value at the center of a square of the values 1, 0, 1, 0 that is turned by so many degrees.
 double center_value(const Weigher& weigher, double degrees) {
-  const std::vector<float> weights = weights_of(weigher, regular(4, kPi / 4 + degrees * kPi / 180), {0, 0, 0});
+  const std::vector<float> weights = weights_of(weigher, regular(4, kPi / 4 + degrees * kDegree), {0, 0, 0});
   return weights[0] + weights[2];
 }
 

@@ -3,24 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/vertex_normals.h"
+#include "tests/degrees_between.h"
 #include "tests/mesh_expectations.h"
 
 namespace raytree {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
 constexpr NormalMethod kMethods[] = {
     NormalMethod::angle,  NormalMethod::unit, NormalMethod::area, NormalMethod::edges, NormalMethod::terminating_edges,
     NormalMethod::corners};
 
-double degrees_between(const Vec3f& a, const Vec3f& b) {
-  const Vec3d x(a), y(b);
-  return std::atan2(x.cross(y).length(), x.dot(y)) / kDegree;
-}
+double degrees_off(const Vec3f& a, const Vec3f& b) { return test::degrees_between(Vec3d(a), Vec3d(b)); }
 
 Vec3f normal_at(const PolygonMesh& mesh, std::size_t corner) {
   return mesh.normals[mesh.normal_corners.empty() ? mesh.corners[corner] : mesh.normal_corners[corner]];
@@ -40,7 +36,7 @@ Vec3f fan_normal(NormalMethod method) {
 // triangle: area 3/2, eq. 4.1 gives 9; edges of 3 and sqrt 2 at 135 degrees.
 TEST(NormalMethods, EachHasItsClosedForm) {
   const auto expect = [](NormalMethod method, Vec3d sum) {
-    EXPECT_LT(degrees_between(fan_normal(method), Vec3f(sum.normalized())), 1e-4) << static_cast<int>(method);
+    EXPECT_LT(degrees_off(fan_normal(method), Vec3f(sum.normalized())), 1e-4) << static_cast<int>(method);
   };
   expect(NormalMethod::unit, {-1, 0, 1});
   expect(NormalMethod::area, {-3, 0, 18});
@@ -83,7 +79,7 @@ Errors errors_on_sphere(PolygonMesh mesh, NormalMethod method) {
   compute_vertex_normals(mesh, {method, kPi, false});
   Errors errors;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const double error = degrees_between(mesh.normals[v], mesh.positions[v]);
+    const double error = degrees_off(mesh.normals[v], mesh.positions[v]);
     errors.mean += error / double(mesh.positions.size());
     errors.largest = std::max(errors.largest, error);
   }
@@ -115,7 +111,7 @@ TEST(NormalMethods, CreasesHoldForEach) {
     for (std::size_t c = 0; c < 12; ++c)
       EXPECT_EQ(normal_at(mesh, c), c < 8 ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1)) << static_cast<int>(method);
     compute_vertex_normals(mesh, {method, kPi, false});
-    EXPECT_GT(degrees_between(normal_at(mesh, 8), Vec3f(0, 0, 1)), 45 - 1e-4) << static_cast<int>(method);
+    EXPECT_GT(degrees_off(normal_at(mesh, 8), Vec3f(0, 0, 1)), 45 - 1e-4) << static_cast<int>(method);
   }
 }
 
@@ -147,14 +143,14 @@ TEST(NormalMethods, TangentPiecesShareNormalsAlongTheirBoundary) {
     for (const double crease : {40 * kDegree, kPi}) {
       PolygonMesh mesh = cylinder_in_two_pieces();
       compute_vertex_normals(mesh, {method, crease, false});
-      EXPECT_NEAR(degrees_between(normal_at(mesh, 9), seam), 15, 1e-3) << "each piece knows its own last side alone";
+      EXPECT_NEAR(degrees_off(normal_at(mesh, 9), seam), 15, 1e-3) << "each piece knows its own last side alone";
       compute_vertex_normals(mesh, {method, crease, true});
       test::expect_valid(mesh);
       std::size_t on_seam = 0;
       for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
         const Vec3f& p = mesh.positions[mesh.corners[c]];
         if (p.y != 1) continue;
-        EXPECT_LT(degrees_between(normal_at(mesh, c), seam), 1e-3) << static_cast<int>(method);
+        EXPECT_LT(degrees_off(normal_at(mesh, c), seam), 1e-3) << static_cast<int>(method);
         ++on_seam;
       }
       EXPECT_EQ(on_seam, 4u);
@@ -172,7 +168,7 @@ TEST(NormalMethods, PiecesThatMeetAtAnAngleKeepTheirOwn) {
     compute_vertex_normals(mesh, {method, 40 * kDegree, true});
     for (std::size_t c = 0; c < 8; ++c) EXPECT_EQ(normal_at(mesh, c), c < 4 ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1));
     compute_vertex_normals(mesh, {method, kPi, true});
-    EXPECT_NEAR(degrees_between(normal_at(mesh, 4), Vec3f(0, 0, 1)), 45, 1e-3) << static_cast<int>(method);
+    EXPECT_NEAR(degrees_off(normal_at(mesh, 4), Vec3f(0, 0, 1)), 45, 1e-3) << static_cast<int>(method);
   }
 }
 

@@ -22,7 +22,7 @@ namespace {
 using test::expect_valid;
 using test::same_mesh;
 
-PolygonMesh read(const std::string& text, Warnings* kept = nullptr) {
+PolygonMesh read_text(const std::string& text, Warnings* kept = nullptr) {
   Warnings warnings;
   PolygonMesh mesh = read_obj(text, "test.obj", warnings);
   expect_valid(mesh);
@@ -30,7 +30,7 @@ PolygonMesh read(const std::string& text, Warnings* kept = nullptr) {
   return mesh;
 }
 
-std::string error_of(const std::string& text) {
+std::string obj_error(const std::string& text) {
   Warnings warnings;
   try {
     read_obj(text, "test.obj", warnings);
@@ -46,40 +46,40 @@ const std::string kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 TEST(ObjReader, ReadsEveryFormOfCorner) {
   const std::string values = kThree + "vt 0.25 0.5\nvt 1\nvn 0 0 2\n";
-  EXPECT_EQ(read(values + "f 1 2 3").corners, (Buffer<std::uint32_t>{0, 1, 2}));
-  PolygonMesh mesh = read(values + "f 1/2 2/1 3/2\n");
+  EXPECT_EQ(read_text(values + "f 1 2 3").corners, (Buffer<std::uint32_t>{0, 1, 2}));
+  PolygonMesh mesh = read_text(values + "f 1/2 2/1 3/2\n");
   EXPECT_EQ(mesh.texture_corners, (Buffer<std::uint32_t>{1, 0, 1}));
   EXPECT_EQ(mesh.texture_coordinates[0], Vec2f(0.25f, 0.5f));
   EXPECT_EQ(mesh.texture_coordinates[1], Vec2f(1, 0));
   EXPECT_TRUE(mesh.normals.empty());
-  mesh = read(values + "f 1//1 2//1 3//1\n");
+  mesh = read_text(values + "f 1//1 2//1 3//1\n");
   EXPECT_EQ(mesh.normal_corners, (Buffer<std::uint32_t>{0, 0, 0}));
   EXPECT_EQ(mesh.normals[0], Vec3f(0, 0, 2));
   EXPECT_TRUE(mesh.texture_coordinates.empty());
-  mesh = read(values + "f 3/1/1 1/1/1 2/2/1 # a comment\n");
+  mesh = read_text(values + "f 3/1/1 1/1/1 2/2/1 # a comment\n");
   EXPECT_EQ(mesh.corners, (Buffer<std::uint32_t>{2, 0, 1}));
   EXPECT_EQ(mesh.texture_corners, (Buffer<std::uint32_t>{0, 0, 1}));
   EXPECT_EQ(mesh.normal_corners, (Buffer<std::uint32_t>{0, 0, 0}));
 }
 
 TEST(ObjReader, RelativeIndicesCountFromTheLineTheyStandOn) {
-  const PolygonMesh mesh = read(kThree + "f -3 -2 -1\nv 5 5 5\nf -1 -4 -2\n");
+  const PolygonMesh mesh = read_text(kThree + "f -3 -2 -1\nv 5 5 5\nf -1 -4 -2\n");
   EXPECT_EQ(mesh.corners, (Buffer<std::uint32_t>{0, 1, 2, 3, 0, 2}));
 }
 
 TEST(ObjReader, KeepsPolygonsAndTheirSizes) {
-  const PolygonMesh mesh = read(kThree + "v 1 1 0\nv 2 2 0\nf 1 2 4 3\nf 1 2 3\nf 1 2 5 4 3\n");
+  const PolygonMesh mesh = read_text(kThree + "v 1 1 0\nv 2 2 0\nf 1 2 4 3\nf 1 2 3\nf 1 2 5 4 3\n");
   EXPECT_EQ(mesh.face_sizes, (Buffer<std::uint32_t>{4, 3, 5}));
   EXPECT_EQ(mesh.corners.size(), 12u);
 }
 
 TEST(ObjReader, AcceptsLineEndsContinuationsAndBlanks) {
-  const PolygonMesh reference = read(kThree + "f 1 2 3\n");
+  const PolygonMesh reference = read_text(kThree + "f 1 2 3\n");
   for (const std::string text : {"v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3",
                                  "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3",
                                  "  v\t0  0 0 \n\n v 1 0 \\\n0\nv 0 1 0\nf 1 \\\r\n 2\\\n\\\n 3",
                                  "v 0 0 0\nv 1 0 0\n# a path C:\\folder\\\nv 0 1 0\nf 1 2 3 \\"})
-    EXPECT_TRUE(same_mesh(read(text), reference)) << text;
+    EXPECT_TRUE(same_mesh(read_text(text), reference)) << text;
 }
 
 TEST(ObjReader, NumbersInEveryNotationAreCorrectlyRounded) {
@@ -125,7 +125,7 @@ TEST(ObjReader, NumbersInEveryNotationAreCorrectlyRounded) {
 }
 
 TEST(ObjReader, MillimetresSurviveAMillionMetresFromTheOrigin) {
-  const PolygonMesh mesh = read(
+  const PolygonMesh mesh = read_text(
       "v 1000000.001 2000000.002 -3000000.003\nv 1000001 2000000 -3000000\n"
       "v 1000000 2000001 -3000000\nf 1 2 3\n");
   EXPECT_NE(mesh.origin, Vec3d(0, 0, 0));
@@ -137,15 +137,15 @@ TEST(ObjReader, MillimetresSurviveAMillionMetresFromTheOrigin) {
 }
 
 TEST(ObjReader, KeepsTheOriginWhereItGainsNothing) {
-  EXPECT_EQ(read("v 1023 0 0\nv 1022 0 0\nv 1022 1 0\nf 1 2 3\n").origin, Vec3d(0, 0, 0));
-  EXPECT_EQ(read("v 5000 0 0\nv -5000 0 0\nv 0 1 0\nf 1 2 3\n").origin, Vec3d(0, 0, 0));
-  EXPECT_EQ(read("v 1024 0 0\nv 1022 0 0\nv 1022 2 0\nf 1 2 3\n").origin, Vec3d(1023, 1, 0));
+  EXPECT_EQ(read_text("v 1023 0 0\nv 1022 0 0\nv 1022 1 0\nf 1 2 3\n").origin, Vec3d(0, 0, 0));
+  EXPECT_EQ(read_text("v 5000 0 0\nv -5000 0 0\nv 0 1 0\nf 1 2 3\n").origin, Vec3d(0, 0, 0));
+  EXPECT_EQ(read_text("v 1024 0 0\nv 1022 0 0\nv 1022 2 0\nf 1 2 3\n").origin, Vec3d(1023, 1, 0));
 }
 
 TEST(ObjReader, GroupsAreRunsOfFaces) {
-  const PolygonMesh mesh = read(kThree +
-                                "g one\nusemtl red paint \nf 1 2 3\nf 1 2 3\no two\nf 1 2 3\ng ghost\n"
-                                "usemtl blue\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
+  const PolygonMesh mesh = read_text(kThree +
+                                     "g one\nusemtl red paint \nf 1 2 3\nf 1 2 3\no two\nf 1 2 3\ng ghost\n"
+                                     "usemtl blue\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
   ASSERT_EQ(mesh.groups.size(), 3u);
   EXPECT_EQ(mesh.groups[0].name, "one");
   EXPECT_EQ(mesh.groups[0].material, "red paint");
@@ -156,11 +156,11 @@ TEST(ObjReader, GroupsAreRunsOfFaces) {
   EXPECT_EQ(mesh.groups[2].material, "blue");
   EXPECT_EQ(mesh.groups[2].first_face, 3u);
   EXPECT_EQ(mesh.groups[2].face_count, 2u);
-  EXPECT_TRUE(read(kThree + "f 1 2 3\ng after\n").groups.empty());
+  EXPECT_TRUE(read_text(kThree + "f 1 2 3\ng after\n").groups.empty());
 }
 
 TEST(ObjReader, GroupsFollowWhenFacesAreDropped) {
-  const PolygonMesh mesh = read(kThree + "g a\nf 1 1 2\ng b\nf 1 2 3\nf 2 2 2\ng c\nf 3 2 1\n");
+  const PolygonMesh mesh = read_text(kThree + "g a\nf 1 1 2\ng b\nf 1 2 3\nf 2 2 2\ng c\nf 3 2 1\n");
   ASSERT_EQ(mesh.groups.size(), 2u);
   EXPECT_EQ(mesh.groups[0].name, "b");
   EXPECT_EQ(mesh.groups[0].first_face, 0u);
@@ -173,7 +173,7 @@ TEST(ObjReader, GroupsCannotMultiplyAFile) {
   std::string text = kThree + "g " + std::string(1000, 'n') + "\n";
   for (int i = 0; i < 150000; ++i) text += "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
   Warnings warnings;
-  const PolygonMesh mesh = read(text, &warnings);
+  const PolygonMesh mesh = read_text(text, &warnings);
   EXPECT_EQ(mesh.face_count(), 300000u);
   ASSERT_EQ(mesh.groups.size(), 262144u);
   EXPECT_EQ(mesh.groups[0].name.size(), 255u);
@@ -183,35 +183,35 @@ TEST(ObjReader, GroupsCannotMultiplyAFile) {
   // Records of changes within a chunk are bounded too.
   text = kThree;
   for (int i = 0; i < 100000; ++i) text += "g\nf\n";
-  EXPECT_EQ(error_of(text + "g\nf 1 2"), "test.obj: no face of this file can be drawn");
+  EXPECT_EQ(obj_error(text + "g\nf 1 2"), "test.obj: no face of this file can be drawn");
 }
 
 TEST(ObjReader, ErrorsNameFileAndLine) {
-  EXPECT_EQ(error_of(kThree + "f 1 2 9\n"), "test.obj:4: the face refers to vertex 9; there are 3 in the file");
-  EXPECT_EQ(error_of(kThree + "f 1 2 -4\n"), "test.obj:4: the face refers to vertex -4; there are 3 before this line");
-  EXPECT_EQ(error_of(kThree + "f 0 1 2\n"), "test.obj:4: the face refers to vertex 0; indices begin at 1");
-  EXPECT_EQ(error_of("v 1 2\n" + kThree + "f 1 2 3"), "test.obj:1: expected 3 numbers, found 2");
-  EXPECT_EQ(error_of("\nv 1 2 x\n"), "test.obj:2: 'x' is not a number");
-  EXPECT_EQ(error_of(kThree + "f 1/1 2/1 3/1\n"),
+  EXPECT_EQ(obj_error(kThree + "f 1 2 9\n"), "test.obj:4: the face refers to vertex 9; there are 3 in the file");
+  EXPECT_EQ(obj_error(kThree + "f 1 2 -4\n"), "test.obj:4: the face refers to vertex -4; there are 3 before this line");
+  EXPECT_EQ(obj_error(kThree + "f 0 1 2\n"), "test.obj:4: the face refers to vertex 0; indices begin at 1");
+  EXPECT_EQ(obj_error("v 1 2\n" + kThree + "f 1 2 3"), "test.obj:1: expected 3 numbers, found 2");
+  EXPECT_EQ(obj_error("\nv 1 2 x\n"), "test.obj:2: 'x' is not a number");
+  EXPECT_EQ(obj_error(kThree + "f 1/1 2/1 3/1\n"),
             "test.obj:4: the face refers to texture coordinates 1; there are 0 in the file");
-  EXPECT_EQ(error_of(kThree + "f 1//2 2//2 3//2\nvn 0 0 1\n"),
+  EXPECT_EQ(obj_error(kThree + "f 1//2 2//2 3//2\nvn 0 0 1\n"),
             "test.obj:4: the face refers to normal 2; there are 1 in the file");
-  EXPECT_NE(error_of(kThree + "\\\n\nf 1 2 3x\n").find("test.obj:6: '3x' is not a corner"), std::string::npos);
-  EXPECT_NE(error_of(kThree + "f 1 2 99999999999999999999\n").find("test.obj:4"), std::string::npos);
-  EXPECT_EQ(error_of(""), "test.obj: no faces in this file");
-  EXPECT_EQ(error_of(kThree), "test.obj: no faces in this file");
-  EXPECT_EQ(error_of(kThree + "f 1 1 2\nf 2\nf\n"), "test.obj: no face of this file can be drawn");
-  EXPECT_NE(error_of(std::string("\xff\xfev\0 \0", 6)).find("UTF-16"), std::string::npos);
+  EXPECT_NE(obj_error(kThree + "\\\n\nf 1 2 3x\n").find("test.obj:6: '3x' is not a corner"), std::string::npos);
+  EXPECT_NE(obj_error(kThree + "f 1 2 99999999999999999999\n").find("test.obj:4"), std::string::npos);
+  EXPECT_EQ(obj_error(""), "test.obj: no faces in this file");
+  EXPECT_EQ(obj_error(kThree), "test.obj: no faces in this file");
+  EXPECT_EQ(obj_error(kThree + "f 1 1 2\nf 2\nf\n"), "test.obj: no face of this file can be drawn");
+  EXPECT_NE(obj_error(std::string("\xff\xfev\0 \0", 6)).find("UTF-16"), std::string::npos);
 }
 
 TEST(ObjReader, LibrariesAreNamedOnceInFileOrder) {
   Warnings warnings;
   std::string text = "mtllib b.mtl\nmtllib  a b.mtl c.mtl \r\nmtllib b.mtl\n" + kThree;
-  EXPECT_EQ(read(text + "f 1 2 3\n", &warnings).material_libraries,
+  EXPECT_EQ(read_text(text + "f 1 2 3\n", &warnings).material_libraries,
             (std::vector<std::string>{"b.mtl", "a b.mtl c.mtl"}));
   EXPECT_TRUE(warnings.empty());
   for (int i = 0; i < 300; ++i) text += "mtllib " + std::to_string(i) + "\n";
-  EXPECT_EQ(read(text + "f 1 2 3\n", &warnings).material_libraries.size(), 256u);
+  EXPECT_EQ(read_text(text + "f 1 2 3\n", &warnings).material_libraries.size(), 256u);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].message.find("beyond the first 256"), std::string::npos);
 }
@@ -220,15 +220,15 @@ TEST(ObjReader, TheFirstErrorInTheFileIsReported) {
   // Far more text than one chunk: every chunk has an error of its own.
   std::string text;
   for (int i = 0; i < 200000; ++i) text += "v 0 0 " + std::string(i == 1000 || i % 20000 == 19999 ? "?" : "0") + "\n";
-  EXPECT_EQ(error_of(text), "test.obj:1001: '?' is not a number");
+  EXPECT_EQ(obj_error(text), "test.obj:1001: '?' is not a number");
 }
 
 TEST(ObjReader, OddButValidFilesLoadWithCountedWarnings) {
   Warnings warnings;
-  const PolygonMesh mesh = read("mtllib a.mtl\n" + kThree +
-                                    "v nan 0 0\nv 1 1 0 1\ns off\nl 1 2\np 1\nfoo bar\nfoo\n"
-                                    "vp 1 2\nf 1 2 3\nf 1 2 4\nf 1 1 2\nf 1 2\nf 1 2 2 3\nf 1 2 1 3\nvn 0 0 1\n",
-                                &warnings);
+  const PolygonMesh mesh = read_text("mtllib a.mtl\n" + kThree +
+                                         "v nan 0 0\nv 1 1 0 1\ns off\nl 1 2\np 1\nfoo bar\nfoo\n"
+                                         "vp 1 2\nf 1 2 3\nf 1 2 4\nf 1 1 2\nf 1 2\nf 1 2 2 3\nf 1 2 1 3\nvn 0 0 1\n",
+                                     &warnings);
   EXPECT_EQ(mesh.face_count(), 2u);
   EXPECT_TRUE(mesh.all_triangles());
   EXPECT_EQ(mesh.corners, (Buffer<std::uint32_t>{0, 1, 2, 0, 1, 2}));
@@ -249,7 +249,7 @@ TEST(ObjReader, OddButValidFilesLoadWithCountedWarnings) {
 
 TEST(ObjReader, FacesWithoutNormalsAmongOthersTakeTheirOwn) {
   Warnings warnings;
-  const PolygonMesh mesh = read(kThree + "vn 1 0 0\nvt 0.5 0.5\nf 1/1/1 2/1/1 3/1/1\nf 1 2 3\n", &warnings);
+  const PolygonMesh mesh = read_text(kThree + "vn 1 0 0\nvt 0.5 0.5\nf 1/1/1 2/1/1 3/1/1\nf 1 2 3\n", &warnings);
   ASSERT_EQ(mesh.normals.size(), 2u);
   EXPECT_EQ(mesh.normals[1], Vec3f(0, 0, 1));
   EXPECT_EQ(mesh.normal_corners, (Buffer<std::uint32_t>{0, 0, 0, 1, 1, 1}));
@@ -259,7 +259,7 @@ TEST(ObjReader, FacesWithoutNormalsAmongOthersTakeTheirOwn) {
 }
 
 TEST(ObjReader, EqualIndicesBecomeNormalsPerPosition) {
-  const PolygonMesh mesh = read(kThree + "vn 1 0 0\nvn 0 1 0\nvn 0 0 1\nf 1//1 2//2 3//3\n");
+  const PolygonMesh mesh = read_text(kThree + "vn 1 0 0\nvn 0 1 0\nvn 0 0 1\nf 1//1 2//2 3//3\n");
   EXPECT_EQ(mesh.normals.size(), 3u);
   EXPECT_TRUE(mesh.normal_corners.empty());
 }
@@ -290,7 +290,7 @@ TEST(ObjReader, ResultDoesNotDependOnThreads) {
   for (const int threads : {1, 2, 3, 7}) {
     const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 7);
     tbb::task_arena arena(threads);
-    arena.execute([&] { meshes.push_back(read(text)); });
+    arena.execute([&] { meshes.push_back(read_text(text)); });
   }
   EXPECT_EQ(meshes[0].face_count(), 219u * 219u);
   EXPECT_EQ(meshes[0].groups.size(), 2u);

@@ -13,16 +13,16 @@ const std::string kSquares =
     "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"  // line 6
     "f 1 2 5 4\nf 2 3 6 5\n";                                 // line 8
 
-PolygonMesh read(const std::string& text, Warnings& warnings) { return read_obj(text, "cage.obj", warnings); }
+PolygonMesh read_cage(const std::string& text, Warnings& warnings) { return read_obj(text, "cage.obj", warnings); }
 
 TEST(ObjTags, AreRead) {
   Warnings warnings;
   const PolygonMesh mesh =
-      read(kSquares +
-               "t crease 2/1/0 1 4 2.5\nt crease 4/2/0 0 1 1 2 3 10 # two edges\nt corner 2/1/0 0 5 inf\n"
-               "t hole 1/0/0 1\nt interpolateboundary 1/0/0 1\nt facevaryinginterpolateboundary 1/0/0 3\n"
-               "t creasemethod 0/0/1 chaikin\nt smoothtriangles 0/0/1 smooth\n",
-           warnings);
+      read_cage(kSquares +
+                    "t crease 2/1/0 1 4 2.5\nt crease 4/2/0 0 1 1 2 3 10 # two edges\nt corner 2/1/0 0 5 inf\n"
+                    "t hole 1/0/0 1\nt interpolateboundary 1/0/0 1\nt facevaryinginterpolateboundary 1/0/0 3\n"
+                    "t creasemethod 0/0/1 chaikin\nt smoothtriangles 0/0/1 smooth\n",
+                warnings);
   EXPECT_TRUE(warnings.empty());
   ASSERT_TRUE(mesh.subdivision);
   const SubdivisionRules& rules = *mesh.subdivision;
@@ -39,13 +39,13 @@ TEST(ObjTags, AreRead) {
   EXPECT_EQ(rules.crease_method, CreaseMethod::chaikin);
   EXPECT_EQ(rules.triangles, TriangleRule::smooth);
   EXPECT_FALSE(rules.scheme);
-  EXPECT_FALSE(read(kSquares, warnings).subdivision);
+  EXPECT_FALSE(read_cage(kSquares, warnings).subdivision);
 }
 
 TEST(ObjTags, HolesFollowTheirFaces) {
   Warnings warnings;
   const std::string text = "f 1 1 2\n" + kSquares + "t hole 3/0/0 0 1 2\n";
-  const PolygonMesh mesh = read("v 5 5 5\n" + text, warnings);
+  const PolygonMesh mesh = read_cage("v 5 5 5\n" + text, warnings);
   EXPECT_EQ(test::found_warning(warnings, "fewer than three"), "2 x1");
   EXPECT_EQ(mesh.face_count(), 2u);
   EXPECT_EQ(mesh.subdivision->holes, (std::vector<std::uint32_t>{0, 1}));
@@ -53,10 +53,10 @@ TEST(ObjTags, HolesFollowTheirFaces) {
 
 TEST(ObjTags, EditsAndUnknownNamesAreCounted) {
   Warnings warnings;
-  const PolygonMesh mesh = read(kSquares +
-                                    "t vertexedit 16/4/3 3 4 1 0\nt edgeedit whatever\nt faceedit\n"
-                                    "t tattoo 1/0/0 2\n",
-                                warnings);
+  const PolygonMesh mesh = read_cage(kSquares +
+                                         "t vertexedit 16/4/3 3 4 1 0\nt edgeedit whatever\nt faceedit\n"
+                                         "t tattoo 1/0/0 2\n",
+                                     warnings);
   EXPECT_FALSE(mesh.subdivision);
   EXPECT_EQ(test::found_warning(warnings, "hierarchical"), "9 x3");
   EXPECT_EQ(test::found_warning(warnings, "unknown names"), "12 x1");
@@ -91,7 +91,7 @@ TEST(ObjTags, DamagedOnesAreRefusedAtTheirLine) {
   };
   for (const auto& [tag, part] : cases) {
     SCOPED_TRACE(tag);
-    test::expect_refusal([&, line = tag] { read(kSquares + line + "\n", warnings); }, "cage.obj", 9, part);
+    test::expect_refusal([&, line = tag] { read_cage(kSquares + line + "\n", warnings); }, "cage.obj", 9, part);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "geometry/angle.h"
 #include "geometry/bezier_patch.h"
 #include "geometry/coons_patch.h"
 #include "geometry/patch_reader.h"
@@ -18,8 +19,8 @@ namespace {
 
 using namespace test;
 
-constexpr DegenerateNormal kMethods[] = {DegenerateNormal::none, DegenerateNormal::gouraud,
-                                         DegenerateNormal::first_order, DegenerateNormal::limit};
+constexpr DegenerateNormal kRemedies[] = {DegenerateNormal::none, DegenerateNormal::gouraud,
+                                          DegenerateNormal::first_order, DegenerateNormal::limit};
 
 template <class Patch>
 Vec3d normal(const Patch& patch, double u, double v, DegenerateNormal method) {
@@ -28,15 +29,16 @@ Vec3d normal(const Patch& patch, double u, double v, DegenerateNormal method) {
 
 /// Over 65 places of a singular edge (or one place 65 times): how many have no normal, and how far the others are from
 /// the truth at most, in degrees.
-struct Outcome {
+struct NormalError {
   int without = 0;
   double worst = 0;
 };
 
 template <class Patch, class Place, class Truth>
-Outcome outcome(const char* row, const Patch& patch, DegenerateNormal method, const Place& place, const Truth& truth) {
+NormalError outcome(const char* row, const Patch& patch, DegenerateNormal method, const Place& place,
+                    const Truth& truth) {
   constexpr const char* kNames[] = {"none", "Gouraud", "first order", "limit"};
-  Outcome result;
+  NormalError result;
   for (int i = 0; i <= 64; ++i) {
     const Vec2d at = place(i / 64.0);
     const Vec3d found = normal(patch, at.x, at.y, method);
@@ -62,11 +64,11 @@ TEST(DegenerateNormals, AtTheTipOfACone) {
   };
   EXPECT_EQ(outcome("row 8, cone", patch, DegenerateNormal::none, tip, truth).without, 65);
   // One normal for the whole tip, (1, 1, -1): off by acos(2 / sqrt(6)) at both ends.
-  const Outcome gouraud = outcome("row 8, cone", patch, DegenerateNormal::gouraud, tip, truth);
+  const NormalError gouraud = outcome("row 8, cone", patch, DegenerateNormal::gouraud, tip, truth);
   EXPECT_EQ(gouraud.without, 0);
-  EXPECT_NEAR(gouraud.worst, std::acos(2 / std::sqrt(6.0)) * 180 / std::numbers::pi, 1e-9);
+  EXPECT_NEAR(gouraud.worst, std::acos(2 / std::sqrt(6.0)) * 180 / kPi, 1e-9);
   for (const DegenerateNormal method : {DegenerateNormal::first_order, DegenerateNormal::limit}) {
-    const Outcome better = outcome("row 8, cone", patch, method, tip, truth);
+    const NormalError better = outcome("row 8, cone", patch, method, tip, truth);
     EXPECT_EQ(better.without, 0);
     EXPECT_LE(better.worst, 1e-12);
   }
@@ -80,7 +82,7 @@ TEST(DegenerateNormals, AtThePoleOfASphere) {
   EXPECT_EQ(outcome("row 8, sphere", patch, DegenerateNormal::none, pole, truth).without, 65);
   for (const DegenerateNormal method :
        {DegenerateNormal::gouraud, DegenerateNormal::first_order, DegenerateNormal::limit}) {
-    const Outcome found = outcome("row 8, sphere", patch, method, pole, truth);
+    const NormalError found = outcome("row 8, sphere", patch, method, pole, truth);
     EXPECT_EQ(found.without, 0);
     EXPECT_LE(found.worst, 1e-12);
   }
@@ -101,7 +103,7 @@ TEST(DegenerateNormals, AtATipBetweenOppositeTangents) {
   EXPECT_EQ(outcome("row 9, bowl", patch, DegenerateNormal::none, tip, truth).without, 65);
   EXPECT_EQ(outcome("row 9, bowl", patch, DegenerateNormal::gouraud, tip, truth).without, 65);
   for (const DegenerateNormal method : {DegenerateNormal::first_order, DegenerateNormal::limit}) {
-    const Outcome better = outcome("row 9, bowl", patch, method, tip, truth);
+    const NormalError better = outcome("row 9, bowl", patch, method, tip, truth);
     EXPECT_EQ(better.without, 0);
     EXPECT_LE(better.worst, 1e-12);
   }
@@ -121,7 +123,7 @@ TEST(DegenerateNormals, AtACusp) {
   for (const DegenerateNormal method :
        {DegenerateNormal::none, DegenerateNormal::gouraud, DegenerateNormal::first_order})
     EXPECT_EQ(outcome("row 9, cusp", patch, method, tip, truth).without, 65);
-  const Outcome limit = outcome("row 9, cusp", patch, DegenerateNormal::limit, tip, truth);
+  const NormalError limit = outcome("row 9, cusp", patch, DegenerateNormal::limit, tip, truth);
   EXPECT_EQ(limit.without, 0);
   EXPECT_LE(limit.worst, 1e-12);
 }
@@ -139,7 +141,7 @@ TEST(DegenerateNormals, WhereThePartialsAreParallel) {
   for (const DegenerateNormal method : {DegenerateNormal::none, DegenerateNormal::gouraud})
     EXPECT_EQ(outcome("row 10", patch, method, corner, truth).without, 65);
   for (const DegenerateNormal method : {DegenerateNormal::first_order, DegenerateNormal::limit}) {
-    const Outcome better = outcome("row 10", patch, method, corner, truth);
+    const NormalError better = outcome("row 10", patch, method, corner, truth);
     EXPECT_EQ(better.without, 0);
     EXPECT_LE(better.worst, 1e-12);
   }
@@ -194,7 +196,7 @@ TEST(DegenerateNormals, ChangeOverWithoutAJump) {
     const Vec3d found = normal(cusp, u, 0.3, DegenerateNormal::limit);
     // P_u x P_v is u^2 (-1 - 2 u, 0, 1). It vanishes at u = 2e-4 by the scale's measure, where its derivative takes
     // over: 2 u (-1, 0, 1) + 6 u^2 (-1, 0, 0), off by u more than the truth is.
-    const double turn = u * 180 / std::numbers::pi;
+    const double turn = u * 180 / kPi;
     EXPECT_LE(degrees_between(found, {-1 - 2 * u, 0, 1}), u < 1e-3 ? 2 * turn + 1e-6 : 1e-6) << u;
   }
 }
@@ -203,7 +205,7 @@ TEST(DegenerateNormals, WithoutAreaThereIsNone) {
   BezierPatch line;
   for (std::size_t i = 0; i < 16; ++i) line.points[i] = Vec3d(double(i % 4), 0, 0);
   const BezierPatch point;
-  for (const DegenerateNormal method : kMethods) {
+  for (const DegenerateNormal method : kRemedies) {
     EXPECT_EQ(normal(line, 0.5, 0.5, method), Vec3d(0, 0, 0));
     EXPECT_EQ(normal(point, 0, 1, method), Vec3d(0, 0, 0));
   }

@@ -18,17 +18,18 @@ std::string sixteen_points() {
 }
 const std::string kIndices = "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16\n";
 
-std::vector<BezierPatch> read(const std::string& text) {
+std::vector<BezierPatch> read_patches(const std::string& text) {
   Warnings warnings;
   return read_patches(text, "test.bpt", warnings);
 }
 
 void expect_refused(const std::string& text, std::int64_t line, const std::string& part) {
-  expect_refusal([&] { read(text); }, "test.bpt", line, part);
+  expect_refusal([&] { read_patches(text); }, "test.bpt", line, part);
 }
 
 TEST(PatchReader, ReadsIndexedPoints) {
-  const auto patches = read("2\n" + kIndices + "16,15,14,13,12,11,10,9,8,7,6,5,4,3,2,1\n16\n" + sixteen_points());
+  const auto patches =
+      read_patches("2\n" + kIndices + "16,15,14,13,12,11,10,9,8,7,6,5,4,3,2,1\n16\n" + sixteen_points());
   ASSERT_EQ(patches.size(), 2u);
   EXPECT_EQ(patches[0].points[0], Vec3d(0.5, 0, -0.1));
   EXPECT_EQ(patches[0].points[6], Vec3d(2.5, 1, -0.1));
@@ -37,16 +38,16 @@ TEST(PatchReader, ReadsIndexedPoints) {
 }
 
 TEST(PatchReader, ReadsPointsInPlace) {
-  const auto patches = read("2\n3 3\n" + sixteen_points() + "3 3\n" + sixteen_points());
+  const auto patches = read_patches("2\n3 3\n" + sixteen_points() + "3 3\n" + sixteen_points());
   ASSERT_EQ(patches.size(), 2u);
   EXPECT_EQ(patches[1].points[6], Vec3d(2.5, 1, -0.1));
 }
 
 TEST(PatchReader, TakesBlanksCommasAndBlankLines) {
   std::string text = "1\r\n\n 1, 2 ,3\t4 5 6 7 8 9 10 11 12 13 14 15 16 \r\n\r\n16\r\n" + sixteen_points() + "\n \n";
-  EXPECT_EQ(read(text).size(), 1u);
+  EXPECT_EQ(read_patches(text).size(), 1u);
   text.resize(text.size() - 4);  // the last line without its end
-  EXPECT_EQ(read(text).size(), 1u);
+  EXPECT_EQ(read_patches(text).size(), 1u);
 }
 
 TEST(PatchReader, SaysWhatIsWrongAndWhere) {
@@ -90,8 +91,8 @@ TEST(PatchReader, WarnsOfPointsThatNoPatchUses) {
 }
 
 TEST(PatchReader, DamagedFilesAreReadOrRefused) {
-  read_damaged_copies("1\n" + kIndices + "16\n" + sixteen_points(), 2000, read);
-  read_damaged_copies("2\n3 3\n" + sixteen_points() + "3 3\n" + sixteen_points(), 2000, read);
+  read_damaged_copies("1\n" + kIndices + "16\n" + sixteen_points(), 2000, read_patches);
+  read_damaged_copies("2\n3 3\n" + sixteen_points() + "3 3\n" + sixteen_points(), 2000, read_patches);
 }
 
 TEST(PatchReader, ReadsThePublishedTeaSet) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "geometry/angle.h"
 #include "geometry/open_edges.h"
 #include "geometry/patch_reader.h"
 #include "geometry/tessellation.h"
@@ -96,7 +97,7 @@ TEST(PatchSurface, JoinsWhatSinglePrecisionCannotTellApart) {
 TEST(PatchSurface, CreasesWhereNormalsDiffer) {
   // 0.5 and 2 degrees, about the default of 1.
   for (const double degrees : {0.5, 2.0}) {
-    const PatchSurface surface = surface_of({square(-1, 0), square(0, std::tan(degrees * std::numbers::pi / 180))});
+    const PatchSurface surface = surface_of({square(-1, 0), square(0, std::tan(degrees * kDegree))});
     const bool sharp = degrees > kPatchCreaseAngle;
     EXPECT_EQ(surface.sides(0)[1].sharp_edge, sharp);
     EXPECT_EQ(surface.sides(1)[3].sharp_edge, sharp);

@@ -26,7 +26,7 @@ namespace {
 using test::expect_valid;
 using test::same_mesh;
 
-PolygonMesh read(const std::string& bytes, Warnings* kept = nullptr) {
+PolygonMesh read_bytes(const std::string& bytes, Warnings* kept = nullptr) {
   Warnings warnings;
   PolygonMesh mesh = read_ply(bytes, "test.ply", warnings);
   expect_valid(mesh);
@@ -34,7 +34,7 @@ PolygonMesh read(const std::string& bytes, Warnings* kept = nullptr) {
   return mesh;
 }
 
-std::string error_of(const std::string& bytes) {
+std::string ply_error(const std::string& bytes) {
   Warnings warnings;
   try {
     read_ply(bytes, "test.ply", warnings);
@@ -138,7 +138,7 @@ std::string roof(const std::string& format, const std::string& value, const std:
 }
 
 TEST(PlyReader, AllFormatsTypesAndSpellingsGiveTheSameMesh) {
-  const PolygonMesh reference = read(roof("ascii", "float", "uchar", "int", false));
+  const PolygonMesh reference = read_bytes(roof("ascii", "float", "uchar", "int", false));
   EXPECT_EQ(reference.face_sizes, (Buffer<std::uint32_t>{3, 4, 5}));
   EXPECT_EQ(reference.corners, (Buffer<std::uint32_t>{0, 1, 2, 0, 1, 2, 3, 0, 1, 2, 4, 3}));
   EXPECT_EQ(reference.positions[4], Vec3f(1, 3, 1));
@@ -146,15 +146,15 @@ TEST(PlyReader, AllFormatsTypesAndSpellingsGiveTheSameMesh) {
     for (const std::string& type : kTypes)
       for (const bool extras : {false, true}) {
         SCOPED_TRACE(format + " " + type);
-        EXPECT_TRUE(same_mesh(read(roof(format, type, "uchar", "int", extras)), reference));
-        EXPECT_TRUE(same_mesh(read(roof(format, "float", type, "uint", extras)), reference));
-        EXPECT_TRUE(same_mesh(read(roof(format, "double", "int", type, extras, "vertex_index")), reference));
+        EXPECT_TRUE(same_mesh(read_bytes(roof(format, type, "uchar", "int", extras)), reference));
+        EXPECT_TRUE(same_mesh(read_bytes(roof(format, "float", type, "uint", extras)), reference));
+        EXPECT_TRUE(same_mesh(read_bytes(roof(format, "double", "int", type, extras, "vertex_index")), reference));
       }
 }
 
 TEST(PlyReader, SaysWhatItSkips) {
   Warnings warnings;
-  read(roof("binary_little_endian", "float", "uchar", "int", true) + "xyz", &warnings);
+  read_bytes(roof("binary_little_endian", "float", "uchar", "int", true) + "xyz", &warnings);
   ASSERT_EQ(warnings.size(), 4u);
   EXPECT_EQ(warnings[0].message, "vertex properties not used: 'weights', 'red'");
   EXPECT_EQ(warnings[0].count, 2);
@@ -178,7 +178,7 @@ std::string triangle(const std::string& properties, const std::vector<std::strin
 TEST(PlyReader, ReadsNormalsAndTextureCoordinates) {
   for (const auto& [u, v] :
        std::vector<std::pair<std::string, std::string>>{{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}}) {
-    const PolygonMesh mesh = read(triangle(
+    const PolygonMesh mesh = read_bytes(triangle(
         "property float nx\nproperty float ny\nproperty float nz\nproperty float " + u + "\nproperty float " + v + "\n",
         {"0 0 0 0 0 1 .25 .5", "1 0 0 0 1 0 1 0", "0 1 0 1 0 0 0 1"}));
     ASSERT_EQ(mesh.normals.size(), 3u);
@@ -187,25 +187,25 @@ TEST(PlyReader, ReadsNormalsAndTextureCoordinates) {
     EXPECT_TRUE(mesh.normal_corners.empty());
   }
   // Half a normal is none.
-  EXPECT_TRUE(read(triangle("property float nx\n", {"0 0 0 1", "1 0 0 1", "0 1 0 1"})).normals.empty());
+  EXPECT_TRUE(read_bytes(triangle("property float nx\n", {"0 0 0 1", "1 0 0 1", "0 1 0 1"})).normals.empty());
 }
 
 TEST(PlyReader, LineEndsOfEveryKind) {
   const std::string text = triangle("", {"0 0 0", "1 0 0", "0 1 0"});
-  const PolygonMesh reference = read(text);
+  const PolygonMesh reference = read_bytes(text);
   for (const std::string end : {"\r\n", "\r", " \n", "\n\n"}) {
     std::string other;
     for (const char c : text) other += c == '\n' ? (other == "ply" && end == "\n\n" ? "\n" : end) : std::string(1, c);
-    EXPECT_TRUE(same_mesh(read(other), reference)) << text::in_quotes(end);
+    EXPECT_TRUE(same_mesh(read_bytes(other), reference)) << text::in_quotes(end);
   }
-  EXPECT_TRUE(same_mesh(read(text.substr(0, text.size() - 1)), reference));
+  EXPECT_TRUE(same_mesh(read_bytes(text.substr(0, text.size() - 1)), reference));
   // Binary data that begin with a line feed; and a header whose last line alone ends with a carriage return.
   std::string header =
       "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n"
       "property uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header";
   const std::string body("\n\0\0\0\1\0\0\0\1\3\0\1\2", 13);
-  EXPECT_EQ(read(header + "\n" + body).positions[0], Vec3f(10, 0, 0));
-  EXPECT_EQ(read(header + "\r\n" + body).positions[0], Vec3f(10, 0, 0));
+  EXPECT_EQ(read_bytes(header + "\n" + body).positions[0], Vec3f(10, 0, 0));
+  EXPECT_EQ(read_bytes(header + "\r\n" + body).positions[0], Vec3f(10, 0, 0));
 }
 
 TEST(PlyReader, AsciiNeedNotKeepToLines) {
@@ -214,11 +214,11 @@ TEST(PlyReader, AsciiNeedNotKeepToLines) {
   const std::size_t body = tokens.find("end_header\n") + 11;
   std::replace(tokens.begin() + static_cast<std::ptrdiff_t>(body), tokens.end(), '\n', ' ');
   Warnings warnings;
-  EXPECT_TRUE(same_mesh(read(tokens, &warnings), read(lines)));
+  EXPECT_TRUE(same_mesh(read_bytes(tokens, &warnings), read_bytes(lines)));
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(),
                           [](const Warning& w) { return w.message.find("in sequence") != std::string::npos; }));
   std::replace(tokens.begin() + static_cast<std::ptrdiff_t>(body), tokens.end(), ' ', '\n');
-  EXPECT_TRUE(same_mesh(read(tokens), read(lines)));
+  EXPECT_TRUE(same_mesh(read_bytes(tokens), read_bytes(lines)));
 }
 
 TEST(PlyReader, DoublesFarFromTheOriginKeepMillimetres) {
@@ -238,7 +238,7 @@ TEST(PlyReader, DoublesFarFromTheOriginKeepMillimetres) {
         }
       }
     for (const int i : {3, 0, 1, 2}) append_typed(file, i == 3 ? "uchar" : "int", i, format);
-    const PolygonMesh mesh = read(file);
+    const PolygonMesh mesh = read_bytes(file);
     EXPECT_EQ(mesh.origin, Vec3d(1000001, 6, 0)) << format;  // the box's center, rounded
     EXPECT_NEAR(mesh.origin.x + static_cast<double>(mesh.positions[0].x), 1e6 + 0.001, 1e-7);
   }
@@ -246,47 +246,47 @@ TEST(PlyReader, DoublesFarFromTheOriginKeepMillimetres) {
 
 TEST(PlyReader, HeaderErrorsNameTheLine) {
   const std::string begin = "ply\nformat ascii 1.0\n";
-  EXPECT_NE(error_of("").find("not a PLY file"), std::string::npos);
-  EXPECT_NE(error_of("plx\n").find("not a PLY file"), std::string::npos);
-  EXPECT_NE(error_of("ply\nformat utf8 1.0\n").find("test.ply:2: unknown format 'utf8'"), std::string::npos);
-  EXPECT_NE(error_of(begin + "element vertex many\n").find("test.ply:3: 'many' is not a count"), std::string::npos);
-  EXPECT_NE(error_of(begin + "element vertex -1\n").find("test.ply:3"), std::string::npos);
-  EXPECT_NE(error_of(begin + "property float x\n").find("test.ply:3: a property before"), std::string::npos);
-  EXPECT_NE(error_of(begin + "element vertex 1\nproperty half x\n").find("test.ply:4: unknown type 'half'"),
+  EXPECT_NE(ply_error("").find("not a PLY file"), std::string::npos);
+  EXPECT_NE(ply_error("plx\n").find("not a PLY file"), std::string::npos);
+  EXPECT_NE(ply_error("ply\nformat utf8 1.0\n").find("test.ply:2: unknown format 'utf8'"), std::string::npos);
+  EXPECT_NE(ply_error(begin + "element vertex many\n").find("test.ply:3: 'many' is not a count"), std::string::npos);
+  EXPECT_NE(ply_error(begin + "element vertex -1\n").find("test.ply:3"), std::string::npos);
+  EXPECT_NE(ply_error(begin + "property float x\n").find("test.ply:3: a property before"), std::string::npos);
+  EXPECT_NE(ply_error(begin + "element vertex 1\nproperty half x\n").find("test.ply:4: unknown type 'half'"),
             std::string::npos);
-  EXPECT_NE(error_of(begin + "element vertex 1\nproperty list uchar x\n").find("test.ply:4"), std::string::npos);
-  EXPECT_NE(error_of(begin + "element vertex 1\n").find("no end_header"), std::string::npos);
-  EXPECT_NE(error_of("ply\nend_header\n").find("no format line"), std::string::npos);
-  EXPECT_NE(error_of(begin + "end_header\n").find("no element 'vertex'"), std::string::npos);
-  EXPECT_NE(error_of(begin + "element vertex 1\nproperty float x\nend_header\n1\n").find("no faces"),
+  EXPECT_NE(ply_error(begin + "element vertex 1\nproperty list uchar x\n").find("test.ply:4"), std::string::npos);
+  EXPECT_NE(ply_error(begin + "element vertex 1\n").find("no end_header"), std::string::npos);
+  EXPECT_NE(ply_error("ply\nend_header\n").find("no format line"), std::string::npos);
+  EXPECT_NE(ply_error(begin + "end_header\n").find("no element 'vertex'"), std::string::npos);
+  EXPECT_NE(ply_error(begin + "element vertex 1\nproperty float x\nend_header\n1\n").find("no faces"),
             std::string::npos);
-  EXPECT_NE(error_of(begin + "element vertex 1\nproperty float x\nelement face 1\nproperty list uchar int "
-                             "vertex_indices\nend_header\n1\n3 0 0 0\n")
+  EXPECT_NE(ply_error(begin + "element vertex 1\nproperty float x\nelement face 1\nproperty list uchar int "
+                              "vertex_indices\nend_header\n1\n3 0 0 0\n")
                 .find("lacks a property x, y or z"),
             std::string::npos);
-  EXPECT_NE(error_of(begin + "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
-                             "property int vertex_indices\nend_header\n0 0 0\n3\n")
+  EXPECT_NE(ply_error(begin + "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                              "property int vertex_indices\nend_header\n0 0 0\n3\n")
                 .find("lacks a list vertex_indices"),
             std::string::npos);
 }
 
 TEST(PlyReader, BodyErrorsNameLineOrElement) {
   const std::vector<std::string> three = {"0 0 0", "1 0 0", "0 1 0"};
-  EXPECT_EQ(error_of(triangle("", three, "3 0 1 3\n")),
+  EXPECT_EQ(ply_error(triangle("", three, "3 0 1 3\n")),
             "test.ply:13: face 1: '3' is not the index of a vertex: it must be in 0..2");
-  EXPECT_NE(error_of(triangle("", three, "3 0 1 2\n3 0 -1 2\n")).find("test.ply:14: face 2: '-1'"), std::string::npos);
-  EXPECT_NE(error_of(triangle("", {"0 0 0", "0 x 0", "1 0 0"})).find("test.ply:11: vertex 2: 'x' is not a number"),
+  EXPECT_NE(ply_error(triangle("", three, "3 0 1 2\n3 0 -1 2\n")).find("test.ply:14: face 2: '-1'"), std::string::npos);
+  EXPECT_NE(ply_error(triangle("", {"0 0 0", "0 x 0", "1 0 0"})).find("test.ply:11: vertex 2: 'x' is not a number"),
             std::string::npos);
-  EXPECT_NE(error_of(triangle("", three, "3 0 1\n")).find("face 1: the data end inside"), std::string::npos);
-  EXPECT_NE(error_of(triangle("", three, "-3 0 1 2\n")).find("'-3' is not a list's count"), std::string::npos);
+  EXPECT_NE(ply_error(triangle("", three, "3 0 1\n")).find("face 1: the data end inside"), std::string::npos);
+  EXPECT_NE(ply_error(triangle("", three, "-3 0 1 2\n")).find("'-3' is not a list's count"), std::string::npos);
   std::string binary = roof("binary_little_endian", "float", "uchar", "int", false);
-  EXPECT_NE(error_of(binary.substr(0, binary.size() - 1)).find("test.ply: face 3: the data end inside"),
+  EXPECT_NE(ply_error(binary.substr(0, binary.size() - 1)).find("test.ply: face 3: the data end inside"),
             std::string::npos);
   binary[binary.size() - 4] = 5;
-  EXPECT_EQ(error_of(binary), "test.ply: face 3: a corner is not the index of a vertex: it must be in 0..4");
+  EXPECT_EQ(ply_error(binary), "test.ply: face 3: a corner is not the index of a vertex: it must be in 0..4");
   binary[binary.size() - 1] = '\xff';
-  EXPECT_NE(error_of(binary).find("face 3: a corner"), std::string::npos);
-  EXPECT_EQ(error_of(triangle("", three, "3 0 0 1\n2 0 1\n0\n")), "test.ply: no face of this file can be drawn");
+  EXPECT_NE(ply_error(binary).find("face 3: a corner"), std::string::npos);
+  EXPECT_EQ(ply_error(triangle("", three, "3 0 0 1\n2 0 1\n0\n")), "test.ply: no face of this file can be drawn");
 }
 
 TEST(PlyReader, SizesAreCheckedBeforeMemoryIsTaken) {
@@ -296,29 +296,29 @@ TEST(PlyReader, SizesAreCheckedBeforeMemoryIsTaken) {
     for (const std::string count : {"1000000", "4000000000", "1000000000000", "999999999999999999"}) {
       const std::string begin = "ply\nformat " + format + " 1.0\n";
       const std::string list = "property list uint int vertex_indices\nend_header\n0 0 0 0";
-      EXPECT_NE(error_of(begin + "element vertex " + count + "\n" + xyz + "element face 1\n" + list).find("too short"),
+      EXPECT_NE(ply_error(begin + "element vertex " + count + "\n" + xyz + "element face 1\n" + list).find("too short"),
                 std::string::npos);
-      EXPECT_NE(error_of(begin + "element vertex 1\n" + xyz + "element face " + count + "\n" + list).find("too short"),
+      EXPECT_NE(ply_error(begin + "element vertex 1\n" + xyz + "element face " + count + "\n" + list).find("too short"),
                 std::string::npos);
-      EXPECT_NE(error_of(begin + "element other " + count + "\nproperty list char char a\nelement vertex 1\n" + xyz +
-                         "element face 1\n" + list)
+      EXPECT_NE(ply_error(begin + "element other " + count + "\nproperty list char char a\nelement vertex 1\n" + xyz +
+                          "element face 1\n" + list)
                     .find("too short"),
                 std::string::npos);
       // Elements without properties take no bytes: however many, they are passed at once.
-      EXPECT_NE(error_of(begin + "element none " + count + "\nelement vertex 1\n" + xyz + "element face 1\n" + list),
+      EXPECT_NE(ply_error(begin + "element none " + count + "\nelement vertex 1\n" + xyz + "element face 1\n" + list),
                 "");
     }
-  EXPECT_NE(error_of(triangle("", {"0 0 0"}, "4000000000 0 0 0\n")).find("the data end inside"), std::string::npos);
+  EXPECT_NE(ply_error(triangle("", {"0 0 0"}, "4000000000 0 0 0\n")).find("the data end inside"), std::string::npos);
   std::string binary = roof("binary_big_endian", "float", "uint", "int", false);
   const std::size_t faces = binary.find("end_header\n") + 11 + 5 * 12;
   binary.replace(faces, 4, "\xff\xff\xff\xff");
-  EXPECT_NE(error_of(binary).find("face 1: the data end inside"), std::string::npos);
+  EXPECT_NE(ply_error(binary).find("face 1: the data end inside"), std::string::npos);
 }
 
 TEST(PlyReader, OddValuesAreDroppedWithACount) {
   Warnings warnings;
-  const PolygonMesh mesh =
-      read(triangle("", {"0 0 0", "1 0 0", "0 1 0", "nan 0 inf"}, "3 0 1 2\n3 1 2 3\n4 0 1 1 2\n3 0 0 2\n"), &warnings);
+  const PolygonMesh mesh = read_bytes(
+      triangle("", {"0 0 0", "1 0 0", "0 1 0", "nan 0 inf"}, "3 0 1 2\n3 1 2 3\n4 0 1 1 2\n3 0 0 2\n"), &warnings);
   EXPECT_EQ(mesh.corners, (Buffer<std::uint32_t>{0, 1, 2, 0, 1, 2}));
   ASSERT_EQ(warnings.size(), 4u);
   EXPECT_EQ(warnings[0].where.line, 16);  // the repeated corner
@@ -368,7 +368,7 @@ TEST(PlyReader, ResultDependsNeitherOnThreadsNorOnFormat) {
       for (const int threads : {1, 2, 3, 7}) {
         const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 7);
         tbb::task_arena arena(threads);
-        arena.execute([&] { meshes.push_back(read(file)); });
+        arena.execute([&] { meshes.push_back(read_bytes(file)); });
       }
     }
     EXPECT_EQ(meshes[0].face_count(), 249u * 249u);

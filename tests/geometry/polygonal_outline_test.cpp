@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "geometry/angle.h"
 #include "geometry/patch_surface.h"
 #include "geometry/tessellation.h"
 #include "geometry/tessellation_rates.h"
@@ -23,10 +24,10 @@ double outline_error(const TriangleMesh& mesh) {
     if (std::hypot(a.x, a.y) < 0.8f || std::hypot(b.x, b.y) < 0.8f) continue;
     const double turn = std::atan2(double(a.x) * double(b.y) - double(a.y) * double(b.x),
                                    double(a.x) * double(b.x) + double(a.y) * double(b.y));
-    const double first = std::atan2(double(a.y), double(a.x)) / (2 * std::numbers::pi) * kDirections;
-    const double last = first + turn / (2 * std::numbers::pi) * kDirections;
+    const double first = std::atan2(double(a.y), double(a.x)) / (2 * kPi) * kDirections;
+    const double last = first + turn / (2 * kPi) * kDirections;
     for (double k = std::ceil(std::min(first, last)); k <= std::max(first, last); ++k) {
-      const double angle = k / kDirections * 2 * std::numbers::pi, c = std::cos(angle), s = std::sin(angle);
+      const double angle = k / kDirections * 2 * kPi, c = std::cos(angle), s = std::sin(angle);
       // Where the edge's line meets the ray at that angle.
       const Vec2d p(double(a.x), double(a.y)), d(double(b.x) - double(a.x), double(b.y) - double(a.y));
       const double across = d.x * s - d.y * c;
@@ -56,10 +57,10 @@ TEST(PolygonalOutline, FollowsTheToleranceAtAnySize) {
     const TriangleMesh cut = tessellate(sphere, rates_for_view(sphere, view, 0.25).rates);
     const double off = radius * outline_error(fixed), on = radius * outline_error(cut);
     std::printf("disc of %4.0f px: 32 sides %.2f px off (closed form %.2f), by the tolerance %.2f px, %zu triangles\n",
-                radius, off, radius * (1 - std::cos(std::numbers::pi / 32)), on, cut.triangle_count());
+                radius, off, radius * (1 - std::cos(kPi / 32)), on, cut.triangle_count());
     EXPECT_LE(on, 0.25);
     // The patches' parameter is not the angle: sides differ by up to a seventh in length.
-    EXPECT_NEAR(off, radius * (1 - std::cos(std::numbers::pi / 32)), 0.35 * off);
+    EXPECT_NEAR(off, radius * (1 - std::cos(kPi / 32)), 0.35 * off);
     if (radius > 100) {
       EXPECT_GT(off, 1);
     }

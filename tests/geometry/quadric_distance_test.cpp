@@ -7,13 +7,11 @@
 #include <random>
 
 #include "geometry/embree_intersector.h"
+#include "geometry/ray_batch.h"
 #include "geometry/surface.h"
 
 namespace raytree {
 namespace {
-
-constexpr double kRoundoff = 0x1p-24;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 enum class Kind { sphere, disc, cylinder, cone };
 constexpr const char* kNames[] = {"sphere", "disc", "cylinder", "cone"};

@@ -13,6 +13,7 @@
 #include <sstream>
 #include <string>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "tests/test_data.h"
 

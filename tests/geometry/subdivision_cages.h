@@ -4,10 +4,11 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
-#include <numbers>
 #include <vector>
 
+#include "geometry/angle.h"
 #include "geometry/polygon_mesh.h"
+#include "tests/degrees_between.h"
 
 namespace raytree::test {
 
@@ -47,7 +48,7 @@ inline PolygonMesh grid_cage(int columns, int rows, float height) {
 /// A closed torus of quads, all vertices regular.
 inline PolygonMesh torus_cage(int around, int across) {
   PolygonMesh mesh;
-  const double turn = 2 * std::numbers::pi;
+  const double turn = 2 * kPi;
   for (int i = 0; i < around; ++i)
     for (int j = 0; j < across; ++j) {
       const double a = turn * i / around, b = turn * j / across, r = 3 + std::cos(b);
@@ -66,7 +67,7 @@ inline PolygonMesh star_cage(int n) {
   mesh.positions.push_back(Vec3f(0.05f, -0.03f, 1.1f));
   const auto ring = [&](int count, double radius) {
     for (int i = 0; i < count; ++i) {
-      const double a = 2 * std::numbers::pi * i / count, r = radius * (1 + 0.15 * std::sin(3 * a + radius));
+      const double a = 2 * kPi * i / count, r = radius * (1 + 0.15 * std::sin(3 * a + radius));
       const double x = r * std::cos(a), y = r * std::sin(a);
       mesh.positions.push_back(Vec3f(Vec3d(x, y, 1 - 0.2 * (x * x + 1.5 * y * y) + 0.1 * std::cos(5 * a + radius))));
     }
@@ -94,7 +95,7 @@ struct ClosedFormLimit {
 /// A = 1 + cos(2 pi / n) + cos(pi / n) sqrt(2 (9 + cos(2 pi / n))). Edges and faces alternate, counter-clockwise.
 inline ClosedFormLimit catmark_limit(const Vec3d& v, const std::vector<Vec3d>& edges, const std::vector<Vec3d>& faces) {
   const auto n = static_cast<double>(edges.size());
-  const double turn = 2 * std::numbers::pi / n;
+  const double turn = 2 * kPi / n;
   const double a = 1 + std::cos(turn) + std::cos(turn / 2) * std::sqrt(2 * (9 + std::cos(turn)));
   Vec3d sum = v * (n * n), t1(0), t2(0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -104,11 +105,6 @@ inline ClosedFormLimit catmark_limit(const Vec3d& v, const std::vector<Vec3d>& e
     t2 += edges[i] * (a * std::sin(turn * k)) + faces[i] * (std::sin(turn * k) + std::sin(turn * (k + 1)));
   }
   return {sum / (n * (n + 5)), t1.cross(t2).normalized()};
-}
-
-/// Degrees between two unit vectors.
-inline double degrees_between(const Vec3d& a, const Vec3d& b) {
-  return std::atan2(a.cross(b).length(), a.dot(b)) * 180 / std::numbers::pi;
 }
 
 }  // namespace raytree::test

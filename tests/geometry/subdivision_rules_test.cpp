@@ -13,8 +13,8 @@
 namespace raytree {
 namespace {
 
-std::unique_ptr<ParametricSurface> surface_of(const PolygonMesh& mesh, const SubdivisionRules& rules,
-                                              std::size_t budget = kPatchPointBudget) {
+std::unique_ptr<ParametricSurface> ruled_surface(const PolygonMesh& mesh, const SubdivisionRules& rules,
+                                                 std::size_t budget = kPatchPointBudget) {
   Warnings warnings;
   return make_subdivision_surface(mesh, rules, {}, warnings, budget);
 }
@@ -70,10 +70,10 @@ TEST(SubdivisionRules, IslandsOfTextureMeetAsTheirRuleSays) {
         std::pair(FaceVaryingRule::boundaries, 1.6), std::pair(FaceVaryingRule::all, 1.6)}) {
     SubdivisionRules rules;
     rules.face_varying = rule;
-    EXPECT_NEAR(double(test::texture_at(*surface_of(cage, rules), 0, {1, 1}).y), expected, 1e-5)
+    EXPECT_NEAR(double(test::texture_at(*ruled_surface(cage, rules), 0, {1, 1}).y), expected, 1e-5)
         << static_cast<int>(rule);
     // The corner of an island of one face: rounded, (4 p + a + b) / 6, where no rule holds it.
-    EXPECT_NEAR(double(test::texture_at(*surface_of(cage, rules), 2, {0, 0}).x),
+    EXPECT_NEAR(double(test::texture_at(*ruled_surface(cage, rules), 2, {0, 0}).x),
                 rule == FaceVaryingRule::none ? 5 + 1.0 / 6 : 5, 1e-5);
   }
 }
@@ -82,7 +82,7 @@ TEST(SubdivisionRules, SharpSidesAndCornersAreThoseOfCreasesAndBoundaries) {
   const PolygonMesh cage = test::grid_cage(5, 5, 1);
   SubdivisionRules rules;
   rules.creases = {{{10, 11, 12}, kInfiniteSharpness}, {{17, 18}, 3}};  // from the boundary to a dart; a semi-sharp one
-  const auto surface = surface_of(cage, rules);
+  const auto surface = ruled_surface(cage, rules);
   std::size_t sharp_sides = 0, sides = 0;
   for (std::size_t face = 0; face < surface->face_count(); ++face) {
     const std::span<const FaceEdge> around = surface->sides(face);
@@ -105,7 +105,7 @@ TEST(SubdivisionRules, SharpSidesAndCornersAreThoseOfCreasesAndBoundaries) {
 
 TEST(SubdivisionRules, WhatIsKeptOfPatchesChangesNoBit) {
   const PolygonMesh star = test::star_cage(5);
-  const auto kept = surface_of(star, {}), derived = surface_of(star, {}, 0);
+  const auto kept = ruled_surface(star, {}), derived = ruled_surface(star, {}, 0);
   for (std::size_t face = 0; face < kept->face_count(); ++face) {
     if (kept->sides(face).empty()) continue;
     for (const Vec2d& at : {Vec2d(0, 0), Vec2d(0.01, 0.02), Vec2d(0.3, 0.7), Vec2d(1, 0.5)}) {

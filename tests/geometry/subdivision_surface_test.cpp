@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "geometry/angle.h"
 #include "geometry/mesh_file.h"
 #include "tests/geometry/subdivision_cages.h"
 #include "tests/geometry/surface_samples.h"
@@ -23,7 +24,7 @@ using test::ClosedFormLimit;
 using test::cube_cage;
 using test::degrees_between;
 
-std::unique_ptr<ParametricSurface> surface_of(const PolygonMesh& mesh, const SubdivisionRules& rules = {}) {
+std::unique_ptr<ParametricSurface> limit_surface(const PolygonMesh& mesh, const SubdivisionRules& rules = {}) {
   Warnings warnings;
   return make_subdivision_surface(mesh, rules, {}, warnings);
 }
@@ -36,7 +37,7 @@ double box_size(const PolygonMesh& mesh) { return bounds(mesh).size().length(); 
 
 TEST(SubdivisionSurface, CubeMeetsItsClosedForms) {
   const PolygonMesh cube = cube_cage();
-  const auto surface = surface_of(cube);
+  const auto surface = limit_surface(cube);
   ASSERT_EQ(surface->face_count(), 6u);
   EXPECT_EQ(surface->edge_count(), 12u);
   const double tolerance = 1e-6 * box_size(cube);
@@ -67,7 +68,7 @@ TEST(SubdivisionSurface, CubeMeetsItsClosedForms) {
 TEST(SubdivisionSurface, VerticesOfEveryValenceMeetTheirLimitMasks) {
   for (int n = 3; n <= 16; ++n) {
     const PolygonMesh star = test::star_cage(n);
-    const auto surface = surface_of(star);
+    const auto surface = limit_surface(star);
     std::vector<Vec3d> edges, faces;
     for (int i = 0; i < n; ++i) {
       edges.emplace_back(star.positions[static_cast<std::size_t>(1 + 2 * i)]);
@@ -96,7 +97,7 @@ TEST(SubdivisionSurface, VerticesOfEveryValenceMeetTheirLimitMasks) {
 
 TEST(SubdivisionSurface, RegularFacesAreBicubicBSplines) {
   const PolygonMesh grid = test::grid_cage(4, 4, 1);
-  const auto surface = surface_of(grid);
+  const auto surface = limit_surface(grid);
   const auto weights = [](double t, int derivative) {
     const double s = 1 - t;
     return derivative == 0
@@ -128,22 +129,22 @@ TEST(SubdivisionSurface, BoundaryAndCornerRulesHold) {
   const PolygonMesh quad = test::grid_cage(2, 2, 0);
   SubdivisionRules rules;
   rules.boundary = BoundaryRule::edge_and_corner;
-  EXPECT_LE((sample_at(*surface_of(quad, rules), 0, 0, 0).position - Vec3f(0, 0, 0)).length(), 1e-6f);
-  EXPECT_TRUE(surface_of(quad, rules)->sides(0)[0].sharp_edge);
+  EXPECT_LE((sample_at(*limit_surface(quad, rules), 0, 0, 0).position - Vec3f(0, 0, 0)).length(), 1e-6f);
+  EXPECT_TRUE(limit_surface(quad, rules)->sides(0)[0].sharp_edge);
   rules.boundary = BoundaryRule::edge_only;
-  const auto smooth = surface_of(quad, rules);
+  const auto smooth = limit_surface(quad, rules);
   EXPECT_LE((sample_at(*smooth, 0, 0, 0).position - Vec3f(1.0f / 6, 1.0f / 6, 0)).length(), 1e-6f);
   EXPECT_LE((sample_at(*smooth, 0, 0.5f, 0).position - Vec3f(0.5f, 2.0f / 48, 0)).length(), 1e-6f);
   rules.boundary = BoundaryRule::none;
-  EXPECT_TRUE(surface_of(quad, rules)->sides(0).empty());
-  const auto inner = surface_of(test::grid_cage(4, 4, 0), rules);
+  EXPECT_TRUE(limit_surface(quad, rules)->sides(0).empty());
+  const auto inner = limit_surface(test::grid_cage(4, 4, 0), rules);
   for (std::size_t face = 0; face < 9; ++face) EXPECT_EQ(inner->sides(face).size(), face == 4 ? 4u : 0u);
 }
 
 TEST(SubdivisionSurface, ParallelDerivativesAtSmoothCornersHaveNormals) {
   // Row 10 of the catalogue: the corner of a single quad with a rounded boundary, where du and dv are parallel.
   PolygonMesh quad = test::grid_cage(2, 2, 0);
-  const auto surface = surface_of(quad);
+  const auto surface = limit_surface(quad);
   for (const float u : {0.0f, 1.0f})
     for (const float v : {0.0f, 1.0f}) {
       const SurfaceSample sample = sample_at(*surface, 0, u, v);
@@ -152,7 +153,7 @@ TEST(SubdivisionSurface, ParallelDerivativesAtSmoothCornersHaveNormals) {
     }
   // Bent: the expansion's normal is the limit of those nearby.
   quad.positions[0].z = 0.5f;
-  const auto bent = surface_of(quad);
+  const auto bent = limit_surface(quad);
   const SurfaceSample corner = sample_at(*bent, 0, 0, 0);
   const SurfaceSample near = sample_at(*bent, 0, 1e-3f, 1e-3f);
   EXPECT_NEAR(corner.normal.length(), 1, 1e-6);
@@ -167,7 +168,7 @@ TEST(SubdivisionSurface, CollapsedEdgesHaveTheirLimitNormals) {
   test::add_face(cone, {0, 1, 2, 3});
   SubdivisionRules rules;
   rules.scheme = SubdivisionScheme::bilinear;
-  const auto surface = surface_of(cone, rules);
+  const auto surface = limit_surface(cone, rules);
   const Vec3d expected = Vec3d(1, 0, 0).cross(Vec3d(0.5, 1, 1)).normalized();
   for (const float u : {0.0f, 0.25f, 1.0f}) {
     EXPECT_EQ(sample_at(*surface, 0, u, 1).du.length(), 0);
@@ -180,7 +181,7 @@ TEST(SubdivisionSurface, CollapsedEdgesHaveTheirLimitNormals) {
     test::add_face(nothing, {0, 1, 2, 3});
     for (const auto scheme : {SubdivisionScheme::catmark, SubdivisionScheme::bilinear}) {
       rules.scheme = scheme;
-      EXPECT_NEAR(sample_at(*surface_of(nothing, rules), 0, 0.5f, 0.5f).normal.length(), 1, 1e-6);
+      EXPECT_NEAR(sample_at(*limit_surface(nothing, rules), 0, 0.5f, 0.5f).normal.length(), 1, 1e-6);
     }
   }
 }
@@ -191,7 +192,7 @@ TEST(SubdivisionSurface, InfiniteCreasesHaveANormalForEachFace) {
   const PolygonMesh cube = cube_cage();
   SubdivisionRules rules;
   rules.creases = {{{4, 5, 7, 6, 4}, kInfiniteSharpness}};
-  const auto surface = surface_of(cube, rules);
+  const auto surface = limit_surface(cube, rules);
   const SurfaceSample top = sample_at(*surface, 5, 0, 0), side = sample_at(*surface, 2, 1, 1);
   const Vec3d corner = (Vec3d(-1, -1, 1) * 4.0 + Vec3d(1, -1, 1) + Vec3d(-1, 1, 1)) / 6.0;
   EXPECT_LE((Vec3d(top.position) - corner).length(), 1e-6);
@@ -203,15 +204,15 @@ TEST(SubdivisionSurface, InfiniteCreasesHaveANormalForEachFace) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(surface->sides(4)[i].sharp_edge);
   // Infinity itself is as sharp as 10.
   rules.creases[0].sharpness = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(sample_at(*surface_of(cube, rules), 2, 0, 1).position, on_side.position);
+  EXPECT_EQ(sample_at(*limit_surface(cube, rules), 2, 0, 1).position, on_side.position);
   // A crease angle finds the cube's edges: its faces stay flat, its corners where they are.
   SubdivisionRules angle;
   angle.crease_angle = 45;
-  const auto sharp = surface_of(cube, angle);
+  const auto sharp = limit_surface(cube, angle);
   EXPECT_LE((sample_at(*sharp, 0, 0, 0).position - cube.positions[0]).length(), 1e-6f);
   EXPECT_TRUE(sharp->sides(0)[0].sharp_edge);
   angle.crease_angle = 91;
-  EXPECT_FALSE(surface_of(cube, angle)->sides(0)[0].sharp_edge);
+  EXPECT_FALSE(limit_surface(cube, angle)->sides(0)[0].sharp_edge);
 }
 
 TEST(SubdivisionSurface, SharpCornersHolesAndMissingCreases) {
@@ -239,27 +240,27 @@ TEST(SubdivisionSurface, TextureCoordinatesFollowTheirRule) {
   SubdivisionRules rules;
   for (const auto rule : {FaceVaryingRule::all, FaceVaryingRule::boundaries}) {
     rules.face_varying = rule;
-    const auto surface = surface_of(cube, rules);
+    const auto surface = limit_surface(cube, rules);
     EXPECT_TRUE(surface->has_texture());
     if (rule == FaceVaryingRule::all) {
       EXPECT_LE((test::texture_at(*surface, 1, {0.25f, 0.5f}) - Vec2f(0.25f, 0.5f)).length(), 1e-6f);
     }
     EXPECT_LE((test::texture_at(*surface, 1, {1, 1}) - Vec2f(1, 1)).length(), 1e-6f);
   }
-  EXPECT_FALSE(surface_of(cube_cage())->has_texture());
+  EXPECT_FALSE(limit_surface(cube_cage())->has_texture());
 }
 
 TEST(SubdivisionSurface, TrianglesAndPentagonsHaveSubfaces) {
   PolygonMesh house;  // a prism over a pentagon: two pentagons, five quads
   for (int z = 0; z < 2; ++z)
     for (int i = 0; i < 5; ++i) {
-      const double a = 2 * std::numbers::pi * i / 5;
+      const double a = 2 * kPi * i / 5;
       house.positions.push_back(Vec3f(Vec3d(std::cos(a), std::sin(a), z)));
     }
   test::add_face(house, {4, 3, 2, 1, 0});
   test::add_face(house, {5, 6, 7, 8, 9});
   for (std::uint32_t i = 0; i < 5; ++i) test::add_face(house, {i, (i + 1) % 5, 5 + (i + 1) % 5, 5 + i});
-  const auto surface = surface_of(house);
+  const auto surface = limit_surface(house);
   EXPECT_EQ(surface->domain(0), FaceDomain::quad_subfaces);
   EXPECT_EQ(surface->sides(0).size(), 5u);
   // The pentagon's middle (sub-face 0's far corner) is its axis, by symmetry.
@@ -270,10 +271,10 @@ TEST(SubdivisionSurface, TrianglesAndPentagonsHaveSubfaces) {
   PolygonMesh tetrahedron;
   tetrahedron.positions = {{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}};
   tetrahedron.corners = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-  EXPECT_EQ(surface_of(tetrahedron)->domain(0), FaceDomain::quad_subfaces);
+  EXPECT_EQ(limit_surface(tetrahedron)->domain(0), FaceDomain::quad_subfaces);
   SubdivisionRules loop;
   loop.scheme = SubdivisionScheme::loop;
-  const auto rounded = surface_of(tetrahedron, loop);
+  const auto rounded = limit_surface(tetrahedron, loop);
   EXPECT_EQ(rounded->domain(0), FaceDomain::triangle);
   // Loop's limit of a vertex of valence 3: beta = 3/16, P = (1 - w) v + w mean(e), w = 1 / (1 + 3 / (8 * 3 beta / 3)).
   const double w = 1 / (1 + 3 / (8 * (3.0 / 16) * 3));
@@ -310,12 +311,12 @@ TEST(SubdivisionSurface, HasTheSameBitsAtAnyNumberOfThreadsAndInAnyCompany) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
       tbb::task_arena arena(threads);
       std::vector<SurfaceSample> samples;
-      arena.execute([&] { samples = dense_samples(*surface_of(cage)); });
+      arena.execute([&] { samples = dense_samples(*limit_surface(cage)); });
       if (first.empty()) first = samples;
       ASSERT_EQ(samples.size(), first.size());
       EXPECT_EQ(std::memcmp(samples.data(), first.data(), samples.size() * sizeof(SurfaceSample)), 0);
     }
-    const auto surface = surface_of(cage);
+    const auto surface = limit_surface(cage);
     const SurfaceSample alone = sample_at(*surface, 0, 0.375f, 0.625f);
     EXPECT_EQ(std::memcmp(&alone, &first[3 * 9 + 5], sizeof alone), 0);
   }
@@ -328,12 +329,12 @@ TEST(SubdivisionSurface, CreasesBesideAVertexOfTwoFacesAreRefused) {
   fold.positions = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}};
   test::add_face(fold, {0, 2, 1, 4});
   test::add_face(fold, {0, 4, 1, 3});
-  EXPECT_NEAR(sample_at(*surface_of(fold), 0, 0.5f, 0.5f).normal.length(), 1, 1e-6);
+  EXPECT_NEAR(sample_at(*limit_surface(fold), 0, 0.5f, 0.5f).normal.length(), 1, 1e-6);
   for (const double sharpness : {2.0, 10.0}) {
     SubdivisionRules rules;
     rules.creases = {{{0, 4}, sharpness}};
     try {
-      const auto surface = surface_of(fold, rules);
+      const auto surface = limit_surface(fold, rules);
       EXPECT_NEAR(sample_at(*surface, 0, 0.5f, 0.5f).normal.length(), 1, 1e-6);
       EXPECT_GE(OPENSUBDIV_VERSION_NUMBER, sharpness < kInfiniteSharpness ? 30600 : 30700) << "accepted";
     } catch (const Error& error) {

@@ -7,16 +7,14 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/tessellation_error.h"
 #include "tests/geometry/analytic_surfaces.h"
 #include "tests/mesh_expectations.h"
 
 namespace raytree {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// The same pixel everywhere.
 TessellationView everywhere(double pixel) {
@@ -33,7 +31,7 @@ TessellationView perspective(const Vec3d& eye, double width, double height) {
   view.forward = (-eye).normalized();
   view.right = view.forward.cross(Vec3d(0, 1, 0)).normalized();
   view.up = view.right.cross(view.forward);
-  view.pixel = 2 * std::tan(20 * kPi / 180) / height;
+  view.pixel = 2 * std::tan(20 * kDegree) / height;
   view.half_width = width / 2;
   view.half_height = height / 2;
   return view;

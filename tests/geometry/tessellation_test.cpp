@@ -11,6 +11,7 @@
 #include <random>
 #include <set>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "tests/geometry/analytic_surfaces.h"
 #include "tests/mesh_expectations.h"
@@ -126,7 +127,7 @@ TEST(Tessellation, AreaAndVolumeOfATorusConvergeInTheSecondOrder) {
   }
   // The chord of an arc h wide at radius r lies inside it by h^2 r / 12 in the mean: a tube of cross-section area
   // smaller by h^2 / 6, a ring shorter by h^2 / 6 times the share that depends on its radius.
-  const double tube = 2 * std::numbers::pi / 160, ring = 2 * std::numbers::pi / 224;
+  const double tube = 2 * kPi / 160, ring = 2 * kPi / 224;
   EXPECT_LT(volume_error / test::torus_volume(), (tube * tube + ring * ring) / 6 * 1.05);
   EXPECT_GT(volume_error / test::torus_volume(), tube * tube / 6 * 0.95);
 }

@@ -10,9 +10,9 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <random>
 
+#include "geometry/angle.h"
 #include "geometry/newell.h"
 
 namespace raytree {
@@ -73,7 +73,7 @@ void expect_exact_cover_everywhere(const std::vector<Vec2d>& flat) {
   Imath::M44d turn;
   turn.rotate(Vec3d(0.7, -1.1, 2.3));
   Imath::M44d upside;
-  upside.rotate(Vec3d(std::numbers::pi / 2, 0.2, 0));
+  upside.rotate(Vec3d(kPi / 2, 0.2, 0));
   for (const Imath::M44d& matrix : {Imath::M44d(), turn, upside}) {
     std::vector<Vec3f> points;
     for (const Vec2d& p : flat) points.push_back(Vec3f(Vec3d(p.x, p.y, 0) * matrix));
@@ -133,7 +133,7 @@ TEST(Triangulation, CoversStarsCombsAndSpirals) {
   for (const int spikes : {3, 5, 17, 200}) {
     std::vector<Vec2d> star;
     for (int i = 0; i < 2 * spikes; ++i) {
-      const double angle = std::numbers::pi * i / spikes, r = i % 2 ? 0.2 : 1.0;
+      const double angle = kPi * i / spikes, r = i % 2 ? 0.2 : 1.0;
       star.push_back({r * std::cos(angle), r * std::sin(angle)});
     }
     expect_exact_cover_everywhere(star);
@@ -160,7 +160,7 @@ std::vector<Vec2d> ragged(std::size_t size, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<Vec2d> points;
   for (std::size_t i = 0; i < size; ++i) {
-    const double angle = 2 * std::numbers::pi * double(i) / double(size);
+    const double angle = 2 * kPi * double(i) / double(size);
     const double r = 0.1 + double(random() % 1000) / 1000;
     points.push_back({r * std::cos(angle), r * std::sin(angle)});
   }
@@ -210,8 +210,7 @@ TEST(Triangulation, PolygonsThatCrossThemselvesAreCountedAndDegenerateOnesHarmle
   // A pentagram, a bow tie of unequal wings, an eight of six corners.
   std::vector<Vec3f> pentagram;
   for (int i = 0; i < 5; ++i)
-    pentagram.push_back(
-        Vec3f(Vec3d(std::cos(i * 4 * std::numbers::pi / 5), std::sin(i * 4 * std::numbers::pi / 5), 0)));
+    pentagram.push_back(Vec3f(Vec3d(std::cos(i * 4 * kPi / 5), std::sin(i * 4 * kPi / 5), 0)));
   EXPECT_EQ(cut(polygon(pentagram), &bad).triangle_count(), 3u);
   EXPECT_EQ(bad, 1);
   for (const float far : {2.0f, 3.0f, 1.0f}) {  // wings that cancel, and that do not
@@ -233,7 +232,7 @@ TEST(Triangulation, HugePolygonsEndInTime) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<Vec2d> circle, spiral, inner;
   for (int i = 0; i < 70000; ++i) {
-    const double angle = 2 * std::numbers::pi * i / 70000;
+    const double angle = 2 * kPi * i / 70000;
     circle.push_back({std::cos(angle), std::sin(angle)});
   }
   for (int i = 0; i < 35000; ++i) {

@@ -8,17 +8,14 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 
+#include "geometry/angle.h"
 #include "geometry/newell.h"
 #include "tests/mesh_expectations.h"
 
 namespace raytree {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
 
 /// Faces of the cube +-1, counter-clockwise from outside. `cut` chooses each face's form: 0 quad, 1 and 2 the
 /// diagonals.
@@ -42,7 +39,7 @@ PolygonMesh cube(unsigned cut) {
   return mesh;
 }
 
-Vec3f normal_at(const PolygonMesh& mesh, std::size_t corner) {
+Vec3f corner_normal(const PolygonMesh& mesh, std::size_t corner) {
   return mesh.normals[mesh.normal_corners.empty() ? mesh.corners[corner] : mesh.normal_corners[corner]];
 }
 
@@ -70,7 +67,7 @@ TEST(VertexNormals, CreasedCubeKeepsItsFaceNormals) {
     std::size_t corner = 0;
     for (const std::uint32_t size : mesh.face_sizes) {
       const Vec3f face(newell_normal(mesh.positions.data(), &mesh.corners[corner], size).normalized());
-      for (std::uint32_t k = 0; k < size; ++k) EXPECT_EQ(normal_at(mesh, corner++), face);
+      for (std::uint32_t k = 0; k < size; ++k) EXPECT_EQ(corner_normal(mesh, corner++), face);
     }
   }
 }
@@ -97,9 +94,9 @@ TEST(VertexNormals, ATeeAtNinetyDegreesHasNoErrorWithACrease) {
   mesh.face_sizes.assign({4, 4, 4});
   mesh.corners.assign({0, 3, 2, 1, 4, 0, 1, 5, 0, 1, 6, 7});
   compute_vertex_normals(mesh, 40 * kDegree);
-  for (std::size_t c = 0; c < 12; ++c) EXPECT_EQ(normal_at(mesh, c), c < 8 ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1));
+  for (std::size_t c = 0; c < 12; ++c) EXPECT_EQ(corner_normal(mesh, c), c < 8 ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1));
   compute_vertex_normals(mesh, kPi);
-  EXPECT_LT(normal_at(mesh, 8).dot(Vec3f(0, 0, 1)), std::cos(45 * kDegree) + 1e-6);
+  EXPECT_LT(corner_normal(mesh, 8).dot(Vec3f(0, 0, 1)), std::cos(45 * kDegree) + 1e-6);
 }
 
 TEST(VertexNormals, SmoothSidesJoinAroundAVertexAcrossManyEdges) {
@@ -200,7 +197,7 @@ TEST(VertexNormals, DegenerateFacesContributeNothingAndNoNormalIsZero) {
     mesh.corners.assign({0, 2, 3, 0, 1, 2, 0, 4, 1, 1, 4, 2, 5, 6, 7, 8, 9, 10, 10, 9, 8});
     compute_vertex_normals(mesh, crease);
     for (const Vec3f& n : mesh.normals) EXPECT_NEAR(n.length(), 1, 2e-7);
-    for (std::size_t c = 0; c < 12; ++c) EXPECT_EQ(normal_at(mesh, c), Vec3f(0, 0, 1)) << c;
+    for (std::size_t c = 0; c < 12; ++c) EXPECT_EQ(corner_normal(mesh, c), Vec3f(0, 0, 1)) << c;
   }
 }
 

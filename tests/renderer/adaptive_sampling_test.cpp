@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
+#include "geometry/angle.h"
 #include "renderer/builtin_scenes.h"
 #include "tests/renderer/test_scenes.h"
 
@@ -55,7 +55,7 @@ TEST(AdaptiveSampling, HalfPlaneCoversWhatItsClosedFormSays) {
     double square_sum = 0;
     int edge_pixels = 0;
     for (const double angle : {0.0, 11.0, 20.0, 33.0, 45.0, 63.0, 78.0, 90.0, 127.0, 200.0, 311.0}) {
-      const double a = std::cos(angle * std::numbers::pi / 180), b = std::sin(angle * std::numbers::pi / 180);
+      const double a = std::cos(angle * kDegree), b = std::sin(angle * kDegree);
       const double shift = offset(random);
       SceneDescription scene = white_on_black(24);
       scene.render.adaptive.levels = levels;
@@ -123,7 +123,7 @@ TEST(AdaptiveSampling, DiscsAndSpheresCoverWhatTheirClosedFormSays) {
       // Some 8 r 2^levels leaves lie on the rim, each off by half of its area at most; three times the deviation of
       // independent errors, and the four caps.
       const double rim = 3 * std::sqrt(8 * radius * std::pow(2, levels)) * 0.5 * std::pow(0.25, levels);
-      EXPECT_NEAR(sum, std::numbers::pi * radius * radius, rim + 4 * cap) << radius;
+      EXPECT_NEAR(sum, kPi * radius * radius, rim + 4 * cap) << radius;
     }
 }
 
@@ -323,7 +323,7 @@ TEST(AdaptiveSampling, ChannelsFollowTheSamplesByArea) {
   EXPECT_EQ(rays, result.statistics.total_rays());
   EXPECT_EQ(result.statistics.rays[0], result.statistics.samples);
   // The speck's pixel: its area and the background's rest.
-  const double area = std::numbers::pi * 0.03 * 0.03;
+  const double area = kPi * 0.03 * 0.03;
   EXPECT_NEAR(film.plane(ChannelGroup::alpha, 0)[pixel_index(film, 3, 3)], area, 1e-6);
   EXPECT_NEAR(value_at(film, 3, 3), 0.5 * (1 - area) + 0.25 * area, 1e-6);
 }
@@ -423,7 +423,7 @@ TEST(AdaptiveSampling, NoneOfTenThousandSmallSpheresIsLost) {
       for (int x = 0; x < 4; ++x)
         sum += value_at(result.film, static_cast<int>(i % 100) * 4 + x, static_cast<int>(i / 100) * 4 + y);
     lost += sum <= 0;
-    const double area = std::numbers::pi * field.radii[i] * field.radii[i];
+    const double area = kPi * field.radii[i] * field.radii[i];
     const auto bin = std::lower_bound(bin_ends, bin_ends + kBins, field.radii[i]) - bin_ends;
     covered[bin] += sum, expected[bin] += area;
     all_covered += sum, all_expected += area;

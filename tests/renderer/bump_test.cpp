@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "geometry/angle.h"
 #include "geometry/surface.h"
 #include "tests/renderer/test_scenes.h"
 
@@ -74,12 +74,12 @@ SceneDescription rippled_wall(double amplitude, double length) {
 }
 double pixel_height(int y) { return (32 - y - 0.5) / 32; }
 Vec3d ripple_normal(double amplitude, double length, double y) {
-  const double k = 2 * std::numbers::pi / length;
+  const double k = 2 * kPi / length;
   return unit(Vec3d(0, -amplitude * k * std::cos(k * y), 1));
 }
 /// Float rounding of a position of up to 1 (2^-24), times how fast the normal turns with it, and of the normal itself.
 double normal_tolerance(double amplitude, double length) {
-  const double k = 2 * std::numbers::pi / length;
+  const double k = 2 * kPi / length;
   return 4e-7 + 0x1p-23 * amplitude * k * k;
 }
 

@@ -10,8 +10,6 @@
 namespace raytree {
 namespace {
 
-using test::kPi;
-
 // Row 7: an outline of k sides lies up to R (1 - cos pi / k) inside its circle; an exact disc has none of it.
 TEST(FacetGeometryFaults, OutlinesOfFacetsLieInsideTheirCircle) {
   const int size = 501;

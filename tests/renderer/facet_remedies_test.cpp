@@ -12,8 +12,6 @@
 namespace raytree {
 namespace {
 
-using test::kPi;
-
 struct Shadows {
   int lit = 0, falsely_dark = 0;  ///< pixels
   double share() const { return double(falsely_dark) / lit; }

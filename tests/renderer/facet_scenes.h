@@ -2,14 +2,12 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "renderer/scene_description.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree::test {
-
-inline constexpr double kPi = std::numbers::pi;
 
 /// An open cylinder about y, radius 1, 4 high, one of its edges toward x = 1 before it is turned.
 inline ShapeDescription faceted_cylinder(int sides, ShadingMethod shading, double turned_degrees = 0) {
@@ -19,7 +17,7 @@ inline ShapeDescription faceted_cylinder(int sides, ShadingMethod shading, doubl
   cone.sides = sides;
   ShapeDescription result = shape(cone, "paint");
   result.shading = shading;
-  result.transform.rotate(Vec3d(0, turned_degrees * kPi / 180, 0));
+  result.transform.rotate(Vec3d(0, turned_degrees * kDegree, 0));
   return result;
 }
 

@@ -2,6 +2,7 @@
 // of materials that cannot be or that make light.
 #include <gtest/gtest.h>
 
+#include "geometry/angle.h"
 #include "renderer/material.h"
 #include "renderer/optics.h"
 #include "tests/renderer/test_scenes.h"
@@ -10,9 +11,6 @@ namespace raytree {
 namespace {
 
 using namespace test;
-
-constexpr double kFloatError = 0x1p-20;
-constexpr double kDegree = std::numbers::pi / 180;
 
 MaterialDescription clear_glass(double index) {
   MaterialDescription result = material("glass", Rgb(0));

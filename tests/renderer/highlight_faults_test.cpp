@@ -11,8 +11,6 @@
 namespace raytree {
 namespace {
 
-using test::kPi;
-
 /// Largest over smallest radius, about the picture's middle, at which values fall below `level`.
 double contour_ratio(const SceneDescription& scene, double level) {
   const std::vector<float> values = test::green(scene);

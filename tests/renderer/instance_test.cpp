@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
+#include "geometry/angle.h"
 #include "geometry/embree_intersector.h"
 #include "geometry/instance_transform.h"
 #include "geometry/surface.h"
@@ -425,7 +425,7 @@ void expect_no_instance_lost(GroupDescription ball, double radius, const char* w
   for (int y = spacing; y < size - spacing; y += spacing)
     for (int x = spacing; x < size - spacing; x += spacing, ++count) {
       const double r = std::exp(uniform(std::log(0.05), std::log(1.0)));
-      expected += std::numbers::pi * r * r;
+      expected += kPi * r * r;
       scene.shapes.push_back(
           instance("ball", scaling(Vec3d(r / radius)) * turn({uniform(0, 6), uniform(0, 6), 0}) *
                                translation({x - size / 2.0 + uniform(-1, 1), y - size / 2.0 + uniform(-1, 1), 0})));

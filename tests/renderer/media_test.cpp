@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/angle.h"
 #include "renderer/optics.h"
 #include "tests/renderer/test_scenes.h"
 
@@ -19,9 +20,6 @@ std::vector<Solid> solids(const Scene& scene, std::initializer_list<ShapeId> sha
 }
 
 using namespace test;
-
-constexpr double kFloatError = 0x1p-20;
-constexpr double kDegree = std::numbers::pi / 180;
 
 MaterialDescription medium(const std::string& name, double index, int priority, Rgb absorption = Rgb(0)) {
   MaterialDescription result = material(name, Rgb(0));

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 
 namespace raytree {
@@ -19,7 +19,7 @@ std::shared_ptr<PolygonMesh> ellipsoid(Vec3d half, Vec3d origin) {
   mesh->origin = origin;
   for (int i = 0; i <= kRings; ++i)
     for (int j = 0; j < kSides; ++j) {
-      const double a = std::numbers::pi * i / kRings, b = 2 * std::numbers::pi * j / kSides;
+      const double a = kPi * i / kRings, b = 2 * kPi * j / kSides;
       mesh->positions.push_back(
           Vec3f(Vec3d(half.x * std::sin(a) * std::cos(b), half.y * std::cos(a), half.z * std::sin(a) * std::sin(b))));
     }
@@ -42,7 +42,7 @@ ProjectedBounds projected_bounds(const PolygonMesh& mesh, const CameraDescriptio
                                  const ImageDescription& image) {
   const Vec3d forward = (camera.target - camera.position).normalized();
   const Vec3d right = forward.cross(camera.up).normalized(), up = right.cross(forward);
-  const double slope = std::tan(camera.field_of_view * std::numbers::pi / 360);
+  const double slope = std::tan(camera.field_of_view * kPi / 360);
   ProjectedBounds box;
   for (const std::uint32_t corner : mesh.corners) {
     const Vec3d to = Vec3d(mesh.positions[corner]) + (mesh.origin - camera.position);

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "renderer/scene.h"
 #include "tests/reader_checks.h"
 #include "tests/test_data.h"
@@ -15,25 +15,25 @@ namespace {
 
 const std::string kView = "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 60\nhither 1\nresolution 101 51\n";
 
-SceneDescription read(const std::string& text, Warnings* warnings = nullptr) {
+SceneDescription read_nff_text(const std::string& text, Warnings* warnings = nullptr) {
   Warnings own;
   return read_nff(text, "a.nff", warnings != nullptr ? *warnings : own);
 }
 
 TEST(NffReader, TheViewSpansTheCentersOfItsRows) {
-  const SceneDescription scene = read(kView);
+  const SceneDescription scene = read_nff_text(kView);
   ASSERT_EQ(scene.cameras.size(), 1u);
   EXPECT_EQ(scene.cameras[0].position, Vec3d(0, 0, 5));
   EXPECT_EQ(scene.cameras[0].target, Vec3d(0, 0, 0));
   EXPECT_EQ(scene.image.width, 101);
   EXPECT_EQ(scene.image.height, 51);
   // The centers of 51 rows span 50 of the 51 pixels.
-  const double half = std::tan(scene.cameras[0].field_of_view / 2 * std::numbers::pi / 180);
-  EXPECT_NEAR(half * 50 / 51, std::tan(30 * std::numbers::pi / 180), 1e-12);
+  const double half = std::tan(scene.cameras[0].field_of_view / 2 * kDegree);
+  EXPECT_NEAR(half * 50 / 51, std::tan(30 * kDegree), 1e-12);
 }
 
 TEST(NffReader, LightsWithoutIntensityShareIt) {
-  const SceneDescription scene = read("b .1 .2 .3\nl 1 2 3\nl 4 5 6 .5 .25 1\nl 7 8 9\nl 1 1 1\n" + kView);
+  const SceneDescription scene = read_nff_text("b .1 .2 .3\nl 1 2 3\nl 4 5 6 .5 .25 1\nl 7 8 9\nl 1 1 1\n" + kView);
   EXPECT_EQ(std::get<ConstantBackground>(scene.background).color, Rgb(.1f, .2f, .3f));
   ASSERT_EQ(scene.lights.size(), 4u);
   EXPECT_EQ(scene.lights[0].color, Rgb(.5f));  // 1 / sqrt(4)
@@ -43,7 +43,7 @@ TEST(NffReader, LightsWithoutIntensityShareIt) {
 
 TEST(NffReader, FillsBecomeWhittedsCoefficients) {
   const SceneDescription scene =
-      read(kView + "f 1 .5 .25 .8 .3 32 .6 1.4\ns 1 2 3 4\nf 1 1 1 1 0 100000 0 0\ns 0 0 0 1\n");
+      read_nff_text(kView + "f 1 .5 .25 .8 .3 32 .6 1.4\ns 1 2 3 4\nf 1 1 1 1 0 100000 0 0\ns 0 0 0 1\n");
   ASSERT_EQ(scene.materials.size(), 2u);
   const MaterialDescription& m = scene.materials[0];
   EXPECT_EQ(std::get<Rgb>(m.diffuse), Rgb(1, .5f, .25f) * .8f);
@@ -60,7 +60,7 @@ TEST(NffReader, FillsBecomeWhittedsCoefficients) {
 }
 
 TEST(NffReader, ConesAndCylinders) {
-  const SceneDescription scene = read(kView + "c 0 1 2 3\n4 5 6 7\nc\n0 0 0 2 0 0 1 0\n");
+  const SceneDescription scene = read_nff_text(kView + "c 0 1 2 3\n4 5 6 7\nc\n0 0 0 2 0 0 1 0\n");
   ASSERT_EQ(scene.shapes.size(), 2u);
   const auto& cone = std::get<ConeShape>(scene.shapes[0].kind);
   EXPECT_EQ(cone.base, Vec3d(0, 1, 2));
@@ -74,7 +74,7 @@ TEST(NffReader, PolygonsOfOneFillAreOneMesh) {
   const std::string square = "p 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n", triangle = "p 3 0 0 1 1 0 1 1 1 1\n";
   const std::string patch = "pp 3\n0 0 2 0 0 1\n1 0 2 0 0 1\n1 1 2 1 0 1\n";
   const SceneDescription scene =
-      read(kView + "f 1 1 1 1 0 1 0 1\n" + square + triangle + patch + "f 1 0 0 1 0 1 0 1\n" + triangle);
+      read_nff_text(kView + "f 1 1 1 1 0 1 0 1\n" + square + triangle + patch + "f 1 0 0 1 0 1 0 1\n" + triangle);
   ASSERT_EQ(scene.shapes.size(), 3u);
   const auto& first = std::get<MeshShape>(scene.shapes[0].kind);
   EXPECT_EQ(first.normals, NormalSource::flat);
@@ -91,10 +91,11 @@ TEST(NffReader, PolygonsOfOneFillAreOneMesh) {
 
 TEST(NffReader, WhatIsOddIsDroppedAndCounted) {
   Warnings warnings;
-  const SceneDescription scene = read(kView +
-                                          "# a comment\ntess 4\nf 1 1 1 1 0 1 0 1 wood.jpg # and another\ns 0 0 0 -2\n"
-                                          "c 1 1 1 1 1 1 1 1\np 2 0 0 0 1 1 1\np 3 0 0 0 1 0 0 0 1 0\n",
-                                      &warnings);
+  const SceneDescription scene =
+      read_nff_text(kView +
+                        "# a comment\ntess 4\nf 1 1 1 1 0 1 0 1 wood.jpg # and another\ns 0 0 0 -2\n"
+                        "c 1 1 1 1 1 1 1 1\np 2 0 0 0 1 1 1\np 3 0 0 0 1 0 0 0 1 0\n",
+                    &warnings);
   ASSERT_EQ(scene.shapes.size(), 2u);
   EXPECT_EQ(std::get<SphereShape>(scene.shapes[0].kind).radius, 2);
   EXPECT_EQ(std::get<MeshShape>(scene.shapes[1].kind).mesh->face_count(), 1u);
@@ -125,7 +126,7 @@ TEST(NffReader, DamageIsAnErrorWithItsLine) {
         {std::string("v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 hither 1 resolution 0 5\n"), 1, "resolution"},
         {std::string("v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 hither 1 resolution 65536 65536\n"), 1, "2^30"}}) {
     SCOPED_TRACE(text);
-    test::expect_refusal([&text = text] { read(text); }, "a.nff", line, part);
+    test::expect_refusal([&text = text] { read_nff_text(text); }, "a.nff", line, part);
   }
 }
 
@@ -133,7 +134,7 @@ TEST(NffReader, BytesOfAnyKindDoNoHarm) {
   const std::string good = "b 0 0 0\nl 1 2 3\n" + kView +
                            "f 1 .5 .25 .8 .3 32 .6 1.4\ns 1 2 3 4\nc 0 1 2 3 4 5 6 7\np 3 0 0 0 1 0 0 0 1 0\n"
                            "pp 3\n0 0 2 0 0 1\n1 0 2 0 0 1\n1 1 2 1 0 1\n";
-  test::read_damaged_copies(good, 4000, [](const std::string& text) { read(text); });
+  test::read_damaged_copies(good, 4000, [](const std::string& text) { read_nff_text(text); });
 }
 
 TEST(NffReader, TheStandardProceduralDatabasesLoadWhole) {

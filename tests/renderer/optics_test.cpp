@@ -4,16 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <numbers>
 #include <random>
 
+#include "geometry/angle.h"
 #include "geometry/surface.h"
 #include "renderer/shading.h"
 
 namespace raytree {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 Vec3d random_unit(std::mt19937_64& random) {

@@ -21,7 +21,7 @@ namespace {
 
 using namespace test;
 
-SceneDescription read(const std::string& shape) {
+SceneDescription scene_with(const std::string& shape) {
   return read_scene("{\"raytree\": 1,\n\"shapes\": {\"it\": {\n" + shape + "}}}", "test.json", "");
 }
 
@@ -38,11 +38,11 @@ std::vector<SurfacePatch> patches_of(const PatchesShape& shape) {
 }
 
 TEST(PatchShape, IsRead) {
-  const PatchesShape shape =
-      shape_of(read("\"type\": \"patches\", \"positions\": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], \"weights\": [1, 2, 3],\n"
-                    "\"bezier\": [[0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 1]],\n"
-                    "\"coons\": [[0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 0, 0]],\n\"lathe\": [[0, 0, 1, 2]],\n"
-                    "\"crease_angle\": 30, \"flip\": true, \"degenerate_normals\": \"gouraud\""));
+  const PatchesShape shape = shape_of(
+      scene_with("\"type\": \"patches\", \"positions\": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], \"weights\": [1, 2, 3],\n"
+                 "\"bezier\": [[0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 1]],\n"
+                 "\"coons\": [[0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 0, 0]],\n\"lathe\": [[0, 0, 1, 2]],\n"
+                 "\"crease_angle\": 30, \"flip\": true, \"degenerate_normals\": \"gouraud\""));
   EXPECT_EQ(shape.crease_angle, 30);
   EXPECT_TRUE(shape.flip);
   EXPECT_EQ(shape.degenerate_normals, DegenerateNormal::gouraud);
@@ -62,7 +62,7 @@ TEST(PatchShape, IsRead) {
 TEST(PatchShape, WhatIsWrongIsRefusedByLineAndKey) {
   const std::string three = "\"positions\": [[0, 0, 0], [1, 0, 0], [-1, 1, 0]]";
   const auto expect_refused = [](const std::string& shape, std::int64_t line, const std::string& part) {
-    expect_refusal([&] { read("\"type\": \"patches\", " + shape); }, "test.json", line, part);
+    expect_refusal([&] { scene_with("\"type\": \"patches\", " + shape); }, "test.json", line, part);
   };
   expect_refused("\"flip\": false", 2, "patches need \"file\", or \"positions\"");
   expect_refused(three, 2, "patches need \"file\", or \"positions\" and one of");
@@ -95,7 +95,7 @@ TEST(PatchShape, ADescriptionOutOfRangeIsRefusedWhenPrepared) {
 }
 
 TEST(PatchShape, ATurnedHalfCircleLooksLikeTheSphere) {
-  SceneDescription scene = read(kHalfCircle);
+  SceneDescription scene = scene_with(kHalfCircle);
   for (const bool flip : {false, true}) {
     constexpr int kSize = 65;
     SceneDescription picture = dark_scene(kSize, front_camera(2.5));
@@ -125,7 +125,7 @@ TEST(PatchShape, ATurnedHalfCircleLooksLikeTheSphere) {
 TEST(PatchShape, IsClosedWhereItsPatchesAre) {
   for (const bool open : {false, true}) {
     SceneDescription scene = dark_scene(3, front_camera(2));
-    scene.shapes = read(kHalfCircle).shapes;
+    scene.shapes = scene_with(kHalfCircle).shapes;
     if (open) std::get<PatchesShape>(scene.shapes[0].kind).lathe.pop_back();
     MaterialDescription glass;
     glass.name = "glass";

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "renderer/noise.h"
 #include "tests/renderer/test_scenes.h"
 
@@ -38,8 +38,8 @@ TEST(Pattern, StripesRunAcrossTheirDirection) {
       for (int x = 0; x < 40; ++x) {
         const double px = (x + 0.5 - 20) * 0.2, py = (20 - y - 0.5) * 0.2;
         const double stripe = ((px - 0.2) * 0.6 + (py + 0.1) * 0.8) / 0.7171;
-        const double share = smooth ? 0.5 + 0.5 * std::sin(std::numbers::pi * stripe)
-                                    : (static_cast<int>(std::floor(stripe)) % 2 == 0 ? 1 : 0);
+        const double share =
+            smooth ? 0.5 + 0.5 * std::sin(kPi * stripe) : (static_cast<int>(std::floor(stripe)) % 2 == 0 ? 1 : 0);
         expect_color(color_at(result.film, x, y), Rgb(static_cast<float>(share), static_cast<float>(1 - share), 0),
                      smooth ? 2e-6 : 0);
       }
@@ -183,7 +183,7 @@ TEST(Pattern, OneFilteredSampleAPixelIsTheMeanOfWhatThePixelCovers) {
   const CheckerPattern checker = black_and_white<CheckerPattern>();
   int index = 0;
   for (const ColorPattern& filtered : {ColorPattern(checker), ColorPattern(stripes), ColorPattern(smooth)})
-    for (const double turn : {0.0, 0.4, std::numbers::pi / 4}) {
+    for (const double turn : {0.0, 0.4, kPi / 4}) {
       ColorPattern bare = filtered;
       std::visit(
           []<class T>(T& pattern) {
@@ -197,7 +197,7 @@ TEST(Pattern, OneFilteredSampleAPixelIsTheMeanOfWhatThePixelCovers) {
       RecordProperty("point_" + std::to_string(index++), std::to_string(bare_error));
       // The horizon stands .35 / tan(30 degrees) of half the picture above its middle. The grid's own mean is off by
       // less than 1/300: two edges a pixel and 24 rows of points.
-      EXPECT_LE(error, parallelogram_error(24 / std::tan(std::numbers::pi / 6), 38) + 1.0 / 300)
+      EXPECT_LE(error, parallelogram_error(24 / std::tan(kPi / 6), 38) + 1.0 / 300)
           << filtered.index() << " turned " << turn;
       EXPECT_GE(bare_error, 4 * error) << filtered.index() << " turned " << turn;
     }

@@ -7,7 +7,9 @@
 #include <limits>
 #include <thread>
 
+#include "geometry/angle.h"
 #include "geometry/embree_intersector.h"
+#include "geometry/ray_batch.h"
 #include "geometry/surface.h"
 #include "renderer/optics.h"
 #include "tests/renderer/test_scenes.h"
@@ -17,8 +19,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kFloatError = 0x1p-20;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Two mirrors that face each other, each with ambient light of its own; the eye stands between them.
@@ -100,7 +100,7 @@ TEST(RayTree, ASlabShiftsARayByItsClosedForm) {
   const double thickness = 0.5, n = 1.5;
   for (const bool mesh : {false, true})
     for (const double degrees : {10.0, 30.0, 50.0, 70.0}) {
-      const double i = degrees * std::numbers::pi / 180, t = std::asin(std::sin(i) / n);
+      const double i = degrees * kDegree, t = std::asin(std::sin(i) / n);
       const double shift = thickness * std::sin(i - t) / std::cos(t);
       // The shift is measured across the ray; along the wall it is shift / cos i.
       const double straight = -2 * std::tan(i);  // the ray travels toward -x
@@ -129,7 +129,7 @@ TEST(RayTree, ASlabShiftsARayByItsClosedForm) {
 TEST(RayTree, FresnelSlabReflectsAndTransmitsTheTextbooksTotals) {
   // Infinitely many bounces inside: R_total = 2R / (1 + R), T_total = (1 - R) / (1 + R).
   for (const double degrees : {0.0, 30.0, 56.3099, 80.0}) {
-    const double i = degrees * std::numbers::pi / 180;
+    const double i = degrees * kDegree;
     SceneDescription scene = slab_scene(i, 0.5, false);
     scene.shapes.pop_back();
     if (degrees == 0) scene.cameras[0].up = {0, 1, 0};
@@ -188,7 +188,7 @@ TEST(RayTree, ACameraInsideGlassSeesTheOutsideThroughTheSurface) {
   for (const double index : {1.5, 1.0}) {
     scene.materials[0].index_of_refraction = index;
     const RenderResult result = rendered(scene);
-    const double pixel = 2 * std::tan(10 * std::numbers::pi / 180) / 64;
+    const double pixel = 2 * std::tan(10 * kDegree) / 64;
     int total = 0;
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "geometry/angle.h"
 #include "renderer/low_discrepancy.h"
 #include "renderer/scene_reader.h"
 #include "tests/renderer/test_scenes.h"
@@ -79,7 +80,7 @@ Material rough_mirror(float roughness) {
 
 /// A horizontal surface seen at `degrees` from its normal, which is y.
 ShadingPoint level_point(const Material& material, double degrees, bool leaving = false) {
-  const double angle = degrees * std::numbers::pi / 180;
+  const double angle = degrees * kDegree;
   SurfacePoint surface;
   surface.position = Vec3f(0, 0, 0), surface.texture = Vec2f(0, 0);
   surface.geometric_normal = surface.shading_normal = Vec3f(0, leaving ? -1.0f : 1.0f, 0);
@@ -171,7 +172,7 @@ TEST(RoughSurface, AThinSheetScattersAsTwoTiltedFacesDo) {
   const Vec3d normal(0, 1, 0);
   const TangentFrame frame = tangent_frame(Vec3f(normal));
   for (const double degrees : {0.0, 30.0, 60.0, 75.0}) {
-    const double angle = degrees * std::numbers::pi / 180;
+    const double angle = degrees * kDegree;
     const Vec3d direction(std::sin(angle), -std::cos(angle), 0);
     for (const double size : {1e-2, 1e-3}) {
       const Vec2d first(0.8 * size, -0.3 * size), second(-0.4 * size, 0.6 * size);
@@ -221,7 +222,7 @@ double error_slope(const std::vector<double>& errors) {
 // model, so a bias would level the errors off.
 TEST(RoughSurface, ErrorFallsWithTheNumberOfFacets) {
   constexpr int kSize = 16;
-  constexpr double kRoughness = 0.2, kHeight = 2, kSquare = 1.5;
+  constexpr double kRoughness = 0.2, kCeiling = 2, kSquare = 1.5;
   for (const bool checker : {false, true}) {
     std::vector<double> errors;
     for (const int samples : {4, 16, 64, 256}) {
@@ -231,7 +232,7 @@ TEST(RoughSurface, ErrorFallsWithTheNumberOfFacets) {
         pattern.even = Rgb(1), pattern.odd = Rgb(0), pattern.size = kSquare;
         description.ambient = Rgb(1);
         description.materials.push_back(material("checker", pattern));
-        description.shapes.push_back(shape(PlaneShape{{0, kHeight, 0}, {0, -1, 0}}, "checker"));
+        description.shapes.push_back(shape(PlaneShape{{0, kCeiling, 0}, {0, -1, 0}}, "checker"));
         description.cameras[0].position = {0, 1, 1};
       } else {
         description.background = GradientBackground{Rgb(0), Rgb(0), Rgb(1)};
@@ -250,7 +251,7 @@ TEST(RoughSurface, ErrorFallsWithTheNumberOfFacets) {
           if (fresh)
             found->second = quadrature(d, kRoughness, served, [&](const Vec3d& r) {
               if (!checker) return r.y;
-              const Vec3d p = at + r * (kHeight / r.y);
+              const Vec3d p = at + r * (kCeiling / r.y);
               const double cell = std::floor(p.x / kSquare) + std::floor(p.z / kSquare);
               return std::fmod(std::abs(cell), 2.0) < 0.5 ? 1.0 : 0.0;
             });
@@ -276,7 +277,7 @@ void expect_highlight_is_image(HighlightForm form) {
   constexpr double kSigma = 0.05, kRadius = 0.04;  // of the bright sphere, as an angle
   constexpr int kSize = 96, kSamples = 1024;
   const bool reflected = form == HighlightForm::reflected;
-  const double tilt = reflected ? 0 : 40 * std::numbers::pi / 180;
+  const double tilt = reflected ? 0 : 40 * kDegree;
   const Vec3d to_light(std::sin(tilt), 0, std::cos(tilt)), halfway = unit(to_light + Vec3d(0, 0, 1));
   CameraDescription camera = front_camera(0.36);
   camera.position.x = camera.target.x = halfway.x;

@@ -242,12 +242,12 @@ TEST(SceneSchema, AgreesWithTheReaderAboutChangedDocuments) {
                                  Json::parse(R"({"type": "constant"})")};
   compared = 0;
   // Sanitizers take twenty times as long: they get a quarter of the documents, another one at each place.
-  constexpr int kShare = kAddressSanitized ? 4 : 1;
+  constexpr int kEveryNth = kAddressSanitized ? 4 : 1;
   int turn = 0;
   for_each_place(right, Json::json_pointer(), [&](const Json::json_pointer& place) {
     // Every value replaced by every other kind of value.
     for (const Json& value : values) {
-      if (++turn % kShare != 0) continue;
+      if (++turn % kEveryNth != 0) continue;
       Json document = right;
       document[place] = value;
       expect_agreement(document);

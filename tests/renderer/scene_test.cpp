@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "geometry/angle.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree {
@@ -19,7 +20,7 @@ SceneDescription with_shape(ShapeDescription s) {
 
 Matrix44d rotation(double degrees, const Vec3d& axis) {
   Matrix44d m;
-  m.setAxisAngle(axis, degrees * std::numbers::pi / 180);
+  m.setAxisAngle(axis, degrees * kDegree);
   return m;
 }
 
@@ -77,7 +78,7 @@ TEST(Scene, SmoothNormalsOfAStretchedSphereAreTheEllipsoids) {
   }
   // A vertex normal of 96 x 48 cells is within half a cell's turn (1.9 degrees) of the sphere's; stretched four times
   // as far. Normals that went by the matrix itself would be off by up to 60 degrees.
-  EXPECT_GT(worst, std::cos(8 * std::numbers::pi / 180));
+  EXPECT_GT(worst, std::cos(8 * kDegree));
 }
 
 TEST(Scene, AMirroredMeshLooksLikeTheMirrorImage) {

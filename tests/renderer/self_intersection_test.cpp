@@ -10,12 +10,11 @@
 
 #include "geometry/embree_intersector.h"
 #include "geometry/instance_transform.h"
+#include "geometry/ray_batch.h"
 #include "geometry/surface.h"
 
 namespace raytree {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class Random {
  public:

@@ -11,8 +11,6 @@
 namespace raytree {
 namespace {
 
-using test::kPi;
-
 constexpr ShadingMethod kMethods[] = {ShadingMethod::flat, ShadingMethod::gouraud, ShadingMethod::phong,
                                       ShadingMethod::limit};
 

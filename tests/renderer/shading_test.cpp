@@ -4,14 +4,13 @@
 
 #include <functional>
 
+#include "geometry/angle.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree {
 namespace {
 
 using namespace test;
-
-constexpr double kFloatError = 0x1p-20;  ///< of radiance about 1: a dozen roundings of half an ulp
 
 TEST(Shading, AmbientAloneIsAmbientTimesItsShare) {
   SceneDescription scene = dark_scene(8, front_camera(1));
@@ -88,7 +87,6 @@ TEST(Shading, ASpotShinesFullInsideItsConeNotAtAllOutsideAndSmoothlyBetween) {
   scene.materials = {material("m", Rgb(1))};
   scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "m")};
   const Vec3d place(0.25, 0.5, 2), travels(-0.1, -0.2, -1);
-  constexpr double kDegree = 0.017453292519943295;
   for (const double inner : {12.0, 24.0, 35.0}) {
     constexpr double kBorder = 35;
     scene.lights = {light_of(SpotLight{place, travels * 3, kBorder, inner, Falloff::none, 1})};
@@ -211,13 +209,13 @@ TEST(Shading, AHighlightsWeightFollowsItsTableOverTheAngleOfIncidence) {
       {10, Rgb(0.2f, 0, 1)}, {30, Rgb(0.4f, 0.5f, 1)}, {80, Rgb(1, 0.25f, 0)}};
   scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "m")};
   const auto seen_at = [&](double degrees) {
-    const double i = degrees * std::numbers::pi / 180;
+    const double i = degrees * kDegree;
     scene.cameras[0].position = Vec3d(std::sin(i), 0, std::cos(i)) * 5.0;
     scene.lights = {directional_light({std::sin(i), 0, -std::cos(i)})};
     return color_at(rendered(scene).film, 0, 0);
   };
   // acos of a cosine in float: off by an ulp of it over sin i; times the steepest slope, 1 in 20 degrees.
-  const double tolerance = 4 * kFloatError + 3 * 0x1p-23 / std::sin(10 * std::numbers::pi / 180);
+  const double tolerance = 4 * kFloatError + 3 * 0x1p-23 / std::sin(10 * kDegree);
   expect_color(seen_at(5), Rgb(0.2f, 0, 1), tolerance, "before the first point");
   expect_color(seen_at(20), Rgb(0.3f, 0.25f, 1), tolerance, "between");
   expect_color(seen_at(55), Rgb(0.7f, 0.375f, 0.5f), tolerance, "between");
@@ -307,7 +305,7 @@ TEST(Shading, BackgroundIsConstantOrBlendsByHeight) {
   const GradientBackground gradient{Rgb(1, 0, 0), Rgb(0, 1, 0), Rgb(0, 0, 1)};
   scene.background = gradient;
   const RenderResult result = rendered(scene);
-  const double pixel = 2 * std::tan(std::numbers::pi / 3) / 32;
+  const double pixel = 2 * std::tan(kPi / 3) / 32;
   for (int y = 0; y < 32; ++y) {
     const double h = unit(Vec3d((4.5 - 16) * pixel, (16 - y - 0.5) * pixel, -1)).y;
     expect_color(color_at(result.film, 4, y),
@@ -369,13 +367,13 @@ TEST(Shading, ALightIsSeenOnlyWhereBothNormalsAgree) {
   // A facet whose normals lean by 60 degrees toward +x; the light comes 75 degrees from the other side, then from
   // below the facet but before the leaning normal.
   auto mesh = triangles({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {0, 1, 2, 0, 2, 3});
-  const double lean = std::numbers::pi / 3;
+  const double lean = kPi / 3;
   mesh->normals.assign(4, Vec3f(static_cast<float>(std::sin(lean)), 0, static_cast<float>(std::cos(lean))));
   SceneDescription scene = dark_scene(4, front_camera(1));
   scene.materials = {material("m", Rgb(1))};
   scene.shapes = {mesh_shape(mesh, "m", NormalSource::file)};
   const auto lit_from = [&](double degrees) {
-    const double angle = degrees * std::numbers::pi / 180;
+    const double angle = degrees * kDegree;
     SceneDescription copy = scene;
     copy.shapes[0] = mesh_shape(std::make_shared<PolygonMesh>(*mesh), "m", NormalSource::file);
     copy.lights = {directional_light({-std::sin(angle), 0, -std::cos(angle)})};

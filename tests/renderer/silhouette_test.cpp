@@ -18,7 +18,7 @@ struct Difference {
   double shade = 0;    ///< of the color of pixels that are covered whole, mean
 };
 
-SceneDescription scene_of(ShapeKind kind) {
+SceneDescription silhouette_scene(ShapeKind kind) {
   SceneDescription scene;
   scene.image = {160, 120};
   CameraDescription camera;
@@ -38,7 +38,7 @@ SceneDescription cage_scene(PolygonMesh mesh, const SubdivisionRules& rules = {}
   MeshShape shape;
   shape.mesh = std::make_shared<PolygonMesh>(std::move(mesh));
   shape.subdivision = rules;
-  return scene_of(shape);
+  return silhouette_scene(shape);
 }
 
 /// A ball of Bezier patches, profile as half_circle() in tests/patch_samples.h.
@@ -47,7 +47,7 @@ SceneDescription ball_scene() {
   constexpr double k = 0.5522847498307936;  // a cubic's quarter circle, to 3e-4
   shape.positions = {{0, -1, 0}, {k, -1, 0}, {1, -k, 0}, {1, 0, 0}, {1, k, 0}, {k, 1, 0}, {0, 1, 0}};
   shape.lathe = {{0, 1, 2, 3}, {3, 4, 5, 6}};
-  return scene_of(shape);
+  return silhouette_scene(shape);
 }
 
 Difference difference(const SceneDescription& scene, double tolerance) {

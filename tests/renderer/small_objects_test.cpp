@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
+#include "geometry/angle.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree {
@@ -30,7 +30,7 @@ TEST(SmallObjects, HullsAreConvexAndHoldTheirPoints) {
     const ImageRectangle box = narrowest_rectangle(hull);
     double least = 1e9;
     for (int i = 0; i < 3600; ++i) {
-      const double angle = std::numbers::pi * i / 3600;
+      const double angle = kPi * i / 3600;
       double low = 1e9, high = -1e9;
       for (const Vec2d& p : points) {
         const double v = p.x * std::cos(angle) + p.y * std::sin(angle);
@@ -121,7 +121,7 @@ TEST(SmallObjects, ASphereSeenInPerspectiveCoversItsConeOfTangents) {
   const SmallObjects small = small_objects_of(std::move(scene));
   ASSERT_EQ(small.size(), 1u);
   const double distance = to_center.length(), cosine = 10 / distance;
-  const double expected = std::numbers::pi * 0.01 / (distance * distance) / (cosine * cosine * cosine) * 100 * 100;
+  const double expected = kPi * 0.01 / (distance * distance) / (cosine * cosine * cosine) * 100 * 100;
   Vec2d centroid;
   EXPECT_NEAR(area_in_square(small[0].outline, 0, 0, 200, centroid), expected, 1e-3 * expected);
   EXPECT_NEAR(centroid.x, 100 + 80, 0.05);

@@ -10,7 +10,7 @@
 namespace raytree {
 namespace {
 
-class Numbers {
+class UniformNumbers {
  public:
   double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
 
@@ -29,7 +29,7 @@ double interval_mean(double x, double width) {
 }
 
 TEST(SquareWave, MeansOverIntervalsAreThoseOfTheClosedForm) {
-  Numbers number;
+  UniformNumbers number;
   for (int i = 0; i < 20000; ++i) {
     const double x = number(-50, 50), width = std::pow(10.0, number(-3, 2));
     // Differences of numbers around 50 over widths of .001.
@@ -47,7 +47,7 @@ TEST(SquareWave, MeansOverIntervalsAreThoseOfTheClosedForm) {
 }
 
 TEST(SquareWave, MeansOverTwoIntervalsAreMeansOfMeans) {
-  Numbers number;
+  UniformNumbers number;
   for (int i = 0; i < 300; ++i) {
     const double x = number(-5, 5), width = number(0.01, 5), other = number(0.01, 5);
     constexpr int kSteps = 4000;
@@ -61,7 +61,7 @@ TEST(SquareWave, MeansOverTwoIntervalsAreMeansOfMeans) {
 }
 
 TEST(SquareWave, CheckerMeansOverParallelogramsAreThoseOfManyPoints) {
-  Numbers number;
+  UniformNumbers number;
   for (int i = 0; i < 150; ++i) {
     const double reach = std::pow(10.0, number(-2, 1));
     const PlaneVector center{number(-20, 20), number(-20, 20)}, edge{number(-reach, reach), number(-reach, reach)},
@@ -85,7 +85,7 @@ TEST(SquareWave, CheckerMeansOverParallelogramsAreThoseOfManyPoints) {
 }
 
 TEST(SquareWave, CheckerMeansOverBoxesAreProducts) {
-  Numbers number;
+  UniformNumbers number;
   for (int i = 0; i < 2000; ++i) {
     const PlaneVector center{number(-20, 20), number(-20, 20)};
     const double width = std::pow(10.0, number(-3, 1.2)), height = std::pow(10.0, number(-3, 1.2));
@@ -102,7 +102,7 @@ TEST(SquareWave, AlongADiagonalACheckerKeepsItsContrast) {
 }
 
 TEST(SquareWave, CheckerMeansOfUnusualWindowsAreInRange) {
-  Numbers number;
+  UniformNumbers number;
   const auto edge = [&] {
     const double reach = std::pow(10.0, number(-300, 18));
     return PlaneVector{number(0, 1) < 0.2 ? 0 : number(-reach, reach), number(0, 1) < 0.2 ? 0 : number(-reach, reach)};

@@ -23,13 +23,13 @@ std::string cube_scene(const std::string& members) {
          kCube + ",\n" + members + "}}}";
 }
 
-Scene prepared(const std::string& text, Warnings& warnings) {
+Scene prepared_cage(const std::string& text, Warnings& warnings) {
   return prepare(read_scene(text, "s.json", ""), PrepareOptions(), warnings);
 }
 
 Bounds3d bounds_of(const std::string& text) {
   Warnings warnings;
-  return prepared(text, warnings).summary.shapes.at(0).bounds;
+  return prepared_cage(text, warnings).summary.shapes.at(0).bounds;
 }
 
 TEST(Subdivision, ASceneMakesACageOfAMesh) {
@@ -47,7 +47,7 @@ TEST(Subdivision, ASceneMakesACageOfAMesh) {
   // A hole leaves no triangles behind.
   Warnings warnings;
   const auto triangles = [&](const std::string& members) {
-    return prepared(cube_scene(members), warnings).summary.shapes.at(0).triangles;
+    return prepared_cage(cube_scene(members), warnings).summary.shapes.at(0).triangles;
   };
   EXPECT_EQ(triangles(R"("subdivision": {"holes": [0, 1, 2]})") * 2, triangles(R"("subdivision": {})"));
   EXPECT_TRUE(warnings.empty());
@@ -56,13 +56,13 @@ TEST(Subdivision, ASceneMakesACageOfAMesh) {
 TEST(Subdivision, WhatNothingShowsIsNotTessellated) {
   const auto array_bytes = [](const std::string& use) {
     Warnings warnings;
-    const Scene scene = prepared(R"({"raytree": 1, "render": {"tessellation": {"rate": 64}},
+    const Scene scene = prepared_cage(R"({"raytree": 1, "render": {"tessellation": {"rate": 64}},
         "groups": {"blob": {"shapes": {"cube": {"type": "mesh", "subdivision": {}, )" +
-                                     kCube + R"(}}},
+                                          kCube + R"(}}},
                    "pair": {"shapes": {"a": {"type": "instance", "group": "blob"}}}},
         "shapes": {"ball": {"type": "sphere"})" +
-                                     use + "}}",
-                                 warnings);
+                                          use + "}}",
+                                      warnings);
     return scene.summary.array_bytes;
   };
   const std::uint64_t triangles = 6 * 2 * 64 * 64;
@@ -74,7 +74,7 @@ TEST(Subdivision, KeysAreStrict) {
   const auto refusal = [](const std::string& members) {
     try {
       Warnings warnings;
-      prepared(cube_scene(members), warnings);
+      prepared_cage(cube_scene(members), warnings);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::bad_input);
       return std::string(error.what());

@@ -19,7 +19,7 @@ CameraDescription camera_at(const Vec3d& position) {
   return camera;
 }
 
-SceneDescription scene_of(const Vec3d& eye) {
+SceneDescription scene_seen_from(const Vec3d& eye) {
   SceneDescription scene;
   scene.image = {640, 360};
   scene.cameras = {camera_at(eye)};
@@ -47,7 +47,7 @@ TEST(SurfaceTessellation, TheViewIsTheCameras) {
 }
 
 TEST(SurfaceTessellation, TheNearestUseCountsForAll) {
-  const SceneDescription scene = scene_of({0, 2, 10});
+  const SceneDescription scene = scene_seen_from({0, 2, 10});
   const TessellationView view = world_view(scene.cameras[0], scene.image, {});
   std::mt19937 random(7);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -80,7 +80,7 @@ TEST(SurfaceTessellation, TheNearestUseCountsForAll) {
 }
 
 TEST(SurfaceTessellation, OneUseIsSeenAsItIs) {
-  const SceneDescription scene = scene_of({0, 2, 10});
+  const SceneDescription scene = scene_seen_from({0, 2, 10});
   const TessellationView view = world_view(scene.cameras[0], scene.image, {});
   Matrix44d place;
   place.setTranslation(Vec3d(1, 2, 3));
@@ -92,7 +92,7 @@ TEST(SurfaceTessellation, OneUseIsSeenAsItIs) {
 }
 
 TEST(SurfaceTessellation, RateAndToleranceAreTheScenes) {
-  SceneDescription scene = scene_of({0, 3, 8});
+  SceneDescription scene = scene_seen_from({0, 3, 8});
   ShapeDescription shape;
   const test::AnalyticSurface surface = test::torus(6, 5);
   ShapeSummary summary;
@@ -120,10 +120,10 @@ TEST(SurfaceTessellation, RateAndToleranceAreTheScenes) {
 }
 
 TEST(SurfaceTessellation, BadSettingsAndCamerasAreRefused) {
-  SceneDescription scene = scene_of({0, 3, 8});
+  SceneDescription scene = scene_seen_from({0, 3, 8});
   const auto refused = [&] {
     EXPECT_THROW(SurfaceTessellation(scene, scene.cameras[0], false), Error);
-    scene = scene_of({0, 3, 8});
+    scene = scene_seen_from({0, 3, 8});
   };
   scene.render.tessellation.tolerance = 0;
   refused();

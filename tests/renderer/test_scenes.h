@@ -8,15 +8,17 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "geometry/angle.h"
 #include "renderer/render.h"
 #include "renderer/scene.h"
 
 namespace raytree::test {
+
+inline constexpr double kFloatError = 0x1p-20;  ///< of radiance about 1: a dozen roundings of half an ulp
 
 inline ChannelSet all_channels() {
   ChannelSet channels;
@@ -187,7 +189,7 @@ inline std::shared_ptr<PolygonMesh> globe_mesh(double radius, int columns, int r
   std::vector<Vec3f> positions{Vec3f(0, static_cast<float>(radius), 0)};
   for (int row = 1; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
-      const double polar = std::numbers::pi * row / rows, azimuth = 2 * std::numbers::pi * column / columns;
+      const double polar = kPi * row / rows, azimuth = 2 * kPi * column / columns;
       positions.emplace_back(
           Vec3d(std::sin(polar) * std::sin(azimuth), std::cos(polar), std::sin(polar) * std::cos(azimuth)) * radius);
     }

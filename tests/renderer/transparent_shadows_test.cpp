@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <random>
 
+#include "geometry/angle.h"
+#include "geometry/ray_batch.h"
 #include "geometry/surface.h"
 #include "renderer/shadow_path.h"
 #include "tests/renderer/test_scenes.h"
@@ -14,10 +16,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kFloatError = 0x1p-20;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-MaterialDescription glass(Rgb transmission, Rgb absorption = Rgb(0)) {
+MaterialDescription clear_glass(Rgb transmission, Rgb absorption = Rgb(0)) {
   MaterialDescription result = material("glass", Rgb(0));
   result.transmission = transmission;
   result.absorption = absorption;
@@ -40,7 +39,7 @@ Vec3d beer(Rgb a, double length) { return {std::exp(-a.r * length), std::exp(-a.
 
 TEST(TransparentShadows, EachCrossingTakesKtAndTheInsideBeersShare) {
   const Rgb k_t(1, 0.5f, 0.25f), a(0, 0.7f, 2);
-  SceneDescription scene = floor_scene(glass(k_t, a));
+  SceneDescription scene = floor_scene(clear_glass(k_t, a));
   scene.shapes.push_back(mesh_shape(box_mesh({-3, -3, 1}, {3, 3, 1.75f}), "glass"));
   // Each of about ten roundings is half an ulp; the way inside begins an offset of some 16 half ulps beside the
   // surface.
@@ -48,8 +47,8 @@ TEST(TransparentShadows, EachCrossingTakesKtAndTheInsideBeersShare) {
 
   // A sheet of one surface takes k_t once; a second one behind it again, in whatever order they stand in the scene.
   for (const bool exchanged : {false, true}) {
-    scene = floor_scene(glass(k_t));
-    scene.materials.push_back(glass(Rgb(0.5f, 1, 0.5f)));
+    scene = floor_scene(clear_glass(k_t));
+    scene.materials.push_back(clear_glass(Rgb(0.5f, 1, 0.5f)));
     scene.materials.back().name = "other";
     scene.shapes.push_back(shape(DiscShape{{0, 0, exchanged ? 3.0 : 1.0}, {0, 0.1, 1}, 5}, "glass"));
     expect_color(color_at(rendered(scene).film, 3, 4), k_t, kFloatError);
@@ -57,14 +56,14 @@ TEST(TransparentShadows, EachCrossingTakesKtAndTheInsideBeersShare) {
     expect_color(color_at(rendered(scene).film, 3, 4), k_t * Rgb(0.5f, 1, 0.5f), kFloatError);
   }
   // k_t above 1 brings no more light than there is.
-  scene = floor_scene(glass(Rgb(3, 0.5f, 1)));
+  scene = floor_scene(clear_glass(Rgb(3, 0.5f, 1)));
   scene.shapes.push_back(shape(DiscShape{{0, 0, 1}, {0, 0, 1}, 5}, "glass"));
   expect_color(color_at(rendered(scene).film, 3, 4), Rgb(1, 0.5f, 1), kFloatError);
 }
 
 TEST(TransparentShadows, OfASphereFollowsItsChords) {
   const Rgb a(0.5f, 1, 3);
-  SceneDescription scene = floor_scene(glass(Rgb(0.9f), a), 32);
+  SceneDescription scene = floor_scene(clear_glass(Rgb(0.9f), a), 32);
   scene.shapes.push_back(shape(SphereShape{{0, 0, 2}, 0.75}, "glass"));
   const RenderResult result = rendered(scene);
   for (int y = 0; y < 32; ++y)
@@ -78,7 +77,7 @@ TEST(TransparentShadows, OfASphereFollowsItsChords) {
 }
 
 TEST(TransparentShadows, EndAtWhatIsOpaqueAndAtTheLight) {
-  SceneDescription scene = floor_scene(glass(Rgb(0.5f)));
+  SceneDescription scene = floor_scene(clear_glass(Rgb(0.5f)));
   scene.shapes.push_back(shape(DiscShape{{0, 0, 1}, {0, 0, 1}, 5}, "glass"));
   scene.shapes.push_back(shape(DiscShape{{0.5, 0, 2}, {0, 0, 1}, 0.5}, "floor"));
   RenderResult result = rendered(scene);
@@ -105,7 +104,7 @@ TEST(TransparentShadows, AreFollowedOnlyWhereSomethingTransmits) {
   EXPECT_FALSE(prepared(scene).transparent_shadows);
   EXPECT_EQ(rendered(scene).statistics.rays[static_cast<int>(RayKind::shadow)], 256u);
   // A transmitting material that nothing wears changes nothing.
-  scene.materials.push_back(glass(Rgb(0.5f)));
+  scene.materials.push_back(clear_glass(Rgb(0.5f)));
   scene.materials.back().name = "unused";
   EXPECT_FALSE(prepared(scene).transparent_shadows);
   // What is asked in addition is counted: of the shadowed quarter one query for the disc, one behind it.
@@ -122,7 +121,7 @@ TEST(TransparentShadows, AreFollowedOnlyWhereSomethingTransmits) {
 }
 
 TEST(TransparentShadows, CrossABoundedNumberOfSurfaces) {
-  SceneDescription scene = floor_scene(glass(Rgb(1)), 2);
+  SceneDescription scene = floor_scene(clear_glass(Rgb(1)), 2);
   for (int i = 0; i < kMostShadowCrossings; ++i)
     scene.shapes.push_back(shape(DiscShape{{0, 0, 1 + 0.01 * i}, {0, 0, 1}, 5}, "glass"));
   EXPECT_NEAR(color_at(rendered(scene).film, 0, 0).r, 1, kFloatError);
@@ -178,7 +177,7 @@ TEST(TransparentShadows, SharedEdgesOfAClosedMeshCountOnce) {
         Case{"blade", triangles({{-1, -0.13f, 0}, {-1, 0.13f, 0}, {-1, 0, 1}, {1, -0.13f, 0}, {1, 0.13f, 0}, {1, 0, 1}},
                                 {0, 1, 4, 0, 4, 3, 0, 3, 5, 0, 5, 2, 1, 2, 5, 1, 5, 4, 0, 2, 1, 3, 4, 5})}}) {
     SceneDescription description = dark_scene(2, front_camera(1));
-    description.materials = {glass(Rgb(0.5f))};
+    description.materials = {clear_glass(Rgb(0.5f))};
     description.shapes = {mesh_shape(c.mesh, "glass")};
     Warnings warnings;
     const Scene scene = prepared(std::move(description), &warnings);
@@ -214,7 +213,7 @@ TEST(TransparentShadows, SharedVerticesOfAClosedMeshCountNoMoreThanOnce) {
   // Six or more triangles may report one crossing. At vertices the robust mode is not tight (catalogue of failures,
   // 37): some rays slip in or out between the triangles unseen, which takes no light that it should not.
   SceneDescription description = dark_scene(2, front_camera(1));
-  description.materials = {glass(Rgb(0.5f))};
+  description.materials = {clear_glass(Rgb(0.5f))};
   description.shapes = {mesh_shape(globe_mesh(1, 24, 12), "glass")};
   const Scene scene = prepared(std::move(description));
   const std::vector<EdgeRay> aimed = edge_rays(scene.shapes->meshes[0].mesh, 20000, true, 11);
@@ -236,7 +235,7 @@ TEST(TransparentShadows, ARayBringsTheSameAloneAndInAnyCompany) {
   std::normal_distribution<double> gauss;
   std::uniform_real_distribution<double> uniform(-2, 2);
   SceneDescription description = dark_scene(2, front_camera(1));
-  description.materials = {glass(Rgb(0.9f, 0.7f, 0.8f), Rgb(0.1f, 0.3f, 0.2f)), material("wall", Rgb(1))};
+  description.materials = {clear_glass(Rgb(0.9f, 0.7f, 0.8f), Rgb(0.1f, 0.3f, 0.2f)), material("wall", Rgb(1))};
   for (int i = 0; i < 40; ++i)
     description.shapes.push_back(
         shape(SphereShape{{uniform(random), uniform(random), uniform(random)}, 0.4}, i % 8 == 0 ? "wall" : "glass"));
@@ -279,7 +278,7 @@ TEST(TransparentShadows, AdaptiveSamplesSeeTheirColoredEdges) {
   // The shadow of a disc that takes green alone: the mean of green over the picture is 1 - (1 - k_t) pi r^2 / area.
   // With up to 4 divisions a pixel of 1/8 unit is resolved to 1/128; the error of an outline of length 2 pi r averages
   // out over some 400 squares of the last level: under a tenth of a square's weight each.
-  SceneDescription scene = floor_scene(glass(Rgb(1, 0.25f, 1)));
+  SceneDescription scene = floor_scene(clear_glass(Rgb(1, 0.25f, 1)));
   scene.shapes.push_back(shape(DiscShape{{0.03, -0.02, 1}, {0, 0, 1}, 0.61}, "glass"));
   scene.render.antialias.method = Antialiasing::Method::whitted;
   const RenderResult result = rendered(scene);
@@ -289,7 +288,7 @@ TEST(TransparentShadows, AdaptiveSamplesSeeTheirColoredEdges) {
       sum += color_at(result.film, x, y).g;
       EXPECT_NEAR(color_at(result.film, x, y).r, 1, kFloatError);
     }
-  EXPECT_NEAR(sum / 256, 1 - 0.75 * std::numbers::pi * 0.61 * 0.61 / 4, 1e-3);
+  EXPECT_NEAR(sum / 256, 1 - 0.75 * kPi * 0.61 * 0.61 / 4, 1e-3);
   EXPECT_GT(result.statistics.samples, 2 * 17u * 17u);
 }
 

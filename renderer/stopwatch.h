@@ -1,0 +1,14 @@
+// Wall time, for what is measured and reported.
+#pragma once
+
+#include <chrono>
+
+namespace raytree {
+
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace raytree
