@@ -69,6 +69,8 @@ constexpr float kBoundsSlack = 0x1p-20f;
 /// Rays into the open, or whose way ends before what Embree holds, are worth no call.
 template <int Width, class Ray>
 bool may_meet(const embree::SceneBounds& bounds, const Ray& ray, const int* valid) {
+  // Shadow rays and others that leave what Embree holds begin inside: one look settles those.
+  if (valid[0] != 0 && bounds.hold(ray.org_x[0], ray.org_y[0], ray.org_z[0])) return true;
   int may = 0;
   for (int i = 0; i < Width; ++i) {
     const float origin[3] = {ray.org_x[i], ray.org_y[i], ray.org_z[i]};

@@ -18,6 +18,10 @@ namespace embree {
 /// nothing.
 struct SceneBounds {
   float least[3], most[3];
+
+  bool hold(float x, float y, float z) const {
+    return (x >= least[0]) & (x <= most[0]) & (y >= least[1]) & (y <= most[1]) & (z >= least[2]) & (z <= most[2]);
+  }
 };
 
 }  // namespace embree
