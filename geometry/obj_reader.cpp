@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -39,14 +40,20 @@ enum class Statement {
 Statement classify(const char*& p, const char* end) {
   p = skip_blanks(p, end);
   if (p == end || *p == '#') return Statement::none;
+  // The words that fill files, before any comparison of strings.
+  const auto word_has = [&](std::ptrdiff_t letters) {
+    return end - p == letters || (end - p > letters && (is_blank(p[letters]) || p[letters] == '#'));
+  };
+  if (*p == 'f' && word_has(1)) return p += 1, Statement::face;
+  if (*p == 'v') {
+    if (word_has(1)) return p += 1, Statement::position;
+    if (word_has(2) && p[1] == 'n') return p += 2, Statement::normal;
+    if (word_has(2) && p[1] == 't') return p += 2, Statement::texture_coordinates;
+  }
   const char* word_end = p;
   while (word_end != end && !is_space(*word_end) && *word_end != '#') ++word_end;
   const std::string_view word(p, static_cast<std::size_t>(word_end - p));
   p = word_end;
-  if (word == "v") return Statement::position;
-  if (word == "f") return Statement::face;
-  if (word == "vn") return Statement::normal;
-  if (word == "vt") return Statement::texture_coordinates;
   if (word == "g" || word == "o") return Statement::group;
   if (word == "usemtl") return Statement::material;
   if (word == "mtllib") return Statement::library;
@@ -118,20 +125,35 @@ struct Counts {
   }
 };
 
+/// What a character is in a face: the pass that counts looks at each once.
+enum FaceCharacter : std::uint8_t { kOrdinary = 0, kBlank = 1, kSlash = 2, kComment = 4 };
+constexpr auto kFaceCharacters = [] {
+  std::array<std::uint8_t, 256> table{};
+  for (std::size_t c = 0; c < table.size(); ++c)
+    table[c] = is_blank(static_cast<char>(c)) ? kBlank : c == '/' ? kSlash : c == '#' ? kComment : kOrdinary;
+  return table;
+}();
+
 void count_face(const char* p, const char* end, Counts& counts) {
   std::size_t corners = 0;
-  for (;;) {
-    p = skip_blanks(p, end);
-    if (p == end || *p == '#') break;
-    ++corners;
-    while (p != end && !is_blank(*p) && *p != '#') {
-      if (*p++ != '/') continue;
-      if (p != end && *p != '/' && !is_blank(*p)) counts.names_texture = true;
-      while (p != end && !is_blank(*p) && *p != '/' && *p != '#') ++p;
-      if (p != end && *p == '/' && p + 1 != end && !is_blank(p[1])) counts.names_normals = true;
-      if (p != end && *p == '/') ++p;
+  unsigned before = kBlank, slashes = 0;
+  bool texture = false, normal = false;
+  for (; p != end; ++p) {
+    const unsigned now = kFaceCharacters[static_cast<unsigned char>(*p)];
+    if (now == kComment) break;
+    if (before == kBlank) {
+      corners += now != kBlank;
+      slashes = 0;
     }
+    // a/b names texture coordinates, a//c and a/b/c a normal.
+    const bool first_behind_slash = before == kSlash && now == kOrdinary;
+    texture |= first_behind_slash & (slashes == 1);
+    normal |= first_behind_slash & (slashes == 2);
+    slashes += now == kSlash;
+    before = now;
   }
+  counts.names_texture |= texture;
+  counts.names_normals |= normal;
   ++counts.faces;
   counts.corners += corners;
   counts.all_triangles = counts.all_triangles && corners == 3;

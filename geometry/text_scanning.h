@@ -11,7 +11,7 @@
 namespace raytree::text {
 
 /// Blank within a line: space, tab, carriage return, vertical tab, form feed.
-inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 inline bool is_space(char c) { return is_blank(c) || c == '\n'; }
 inline bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
 
