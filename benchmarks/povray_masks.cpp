@@ -21,7 +21,7 @@ constexpr std::int64_t kTerrainTriangles = 50'000;
 constexpr int kFine = 5;
 /// Of pixels away from edges, percent: at terminators and where shadows are thinner than our samples lie apart, both
 /// round their own way.
-constexpr double kMostDiffering = 0.02;
+constexpr double kMostDiffering = 0.01;
 
 MaterialDescription white(const std::string& name) {
   MaterialDescription material;
