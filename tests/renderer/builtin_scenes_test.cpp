@@ -28,9 +28,10 @@ TEST(BuiltinScenes, AllReadAndRoundTrip) {
     const std::string text = write_scene(description);
     EXPECT_EQ(write_scene(read_scene(text, scene.name, "")), text) << scene.name;
   }
-  for (const char* name : {"spheres-1980", "sphere-flake", "terrain", "forest", "stepwedge", "mirrors", "lens", "glass",
-                           "rough", "teapot", "goblet", "t-tail", "whitted-fig6", "whitted-fig7", "cylinders", "cone",
-                           "faceted-sphere", "prisms", "molecule", "spd-balls", "spd-tree"})
+  for (const char* name :
+       {"spheres-1980", "sphere-flake", "terrain",        "forest", "stepwedge", "mirrors",      "lens",
+        "glass",        "rough",        "teapot",         "goblet", "t-tail",    "whitted-fig6", "whitted-fig7",
+        "cylinders",    "cone",         "faceted-sphere", "prisms", "molecule",  "spd-balls",    "spd-tree"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
 }
 
