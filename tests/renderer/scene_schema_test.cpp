@@ -163,11 +163,26 @@ Json rich_document() {
 
 /// Where messages of the reader speak of what a schema cannot say.
 bool beyond_a_schema(const std::string& message) {
-  for (const char* text :
-       {"unknown material", "too many", "same point", "line of sight", "not invertible", "index ", "not in the shape",
-        " positions; give", "not affine", "overlap the group", "conductor transmits", "thin sheet has no inside", "seen from both sides",
-        "weight_by_angle: angle", "unknown group", "unknown terrain", "may not hold itself", "a plane has no bounds",
-        "is larger than largest_scale", "lies above highest"})
+  for (const char* text : {"unknown material",
+                           "too many",
+                           "same point",
+                           "line of sight",
+                           "not invertible",
+                           "index ",
+                           "not in the shape",
+                           " positions; give",
+                           "not affine",
+                           "overlap the group",
+                           "conductor transmits",
+                           "thin sheet has no inside",
+                           "seen from both sides",
+                           "weight_by_angle: angle",
+                           "unknown group",
+                           "unknown terrain",
+                           "may not hold itself",
+                           "a plane has no bounds",
+                           "is larger than largest_scale",
+                           "lies above highest"})
     if (message.find(text) != message.npos) return true;
   return false;
 }
