@@ -13,8 +13,10 @@
 #include "app/messages.h"
 #include "app/process.h"
 #include "app/render_options.h"
+#include "app/spd_counts_text.h"
 #include "app/statistics_json.h"
 #include "renderer/film_image.h"
+#include "renderer/spd_counts.h"
 #include "renderer/stopwatch.h"
 
 namespace raytree::app {
@@ -35,6 +37,7 @@ class RenderRun {
     const RenderResult result = trace(scene);
     write(scene, result.film);
     report();
+    if (options_.spd_counts) print_result(spd_counts_text(scene.description, result.statistics));
   }
 
  private:
@@ -46,6 +49,7 @@ class RenderRun {
     progress_.phase("reading " + options_.scene.scene);
     const Clock::time_point begin = Clock::now();
     SceneDescription description = load_scene(options_.scene, report_.warnings);
+    if (options_.spd_counts) set_standard_spd_render(description);
     report_.read_seconds = seconds_since(begin);
     check_interruption();
     const PixelWindow frame{0, 0, description.image.width, description.image.height};

@@ -23,7 +23,7 @@ struct RenderFlags {
   SceneFlags scene;
   std::vector<std::string> words;  ///< without a flag: the scene, and file names that follow the first one of -o
   std::vector<std::string> outputs;
-  std::string format, crop, threads, channels, exposure, ocio, display, view, statistics, progress = "auto";
+  std::string format, crop, threads, channels, exposure, ocio, display, view, statistics, counts, progress = "auto";
   bool half = false, quiet = false, verbose = false;
 };
 
@@ -48,6 +48,11 @@ void add_flags(CLI::App& command, RenderFlags& flags) {
   command.add_flag("--half", flags.half, "Store colors in an EXR as 16-bit floats")->group("Output");
   command.add_option("--stats", flags.statistics, "Write what the render cost as JSON; - is standard output")
       ->type_name("FILE.json")
+      ->group("Output");
+  command
+      .add_option("--counts", flags.counts,
+                  "spd: trace the standard render of the SPD and print its rays beside the published ones")
+      ->type_name("NAME")
       ->group("Output");
   add_scene_flags(command, flags.scene, true);
   add_shading_flag(command, flags.scene);
@@ -109,7 +114,7 @@ void sort_words(RenderFlags& flags) {
 }
 
 std::vector<OutputFile> parse_outputs(const RenderFlags& flags) {
-  if (flags.outputs.empty())
+  if (flags.outputs.empty() && flags.counts.empty())
     throw usage_error("no output: add -o FILE, for example -o picture.png or -o picture.exr (- is standard output)");
   std::vector<OutputFile> outputs;
   for (const std::string& path : flags.outputs) {
@@ -143,6 +148,21 @@ PixelWindow parse_crop(const std::string& text) {
     }
   }
   throw usage_error(fmt::format("--crop: \"{}\" is not WxH+X+Y in pixels, for example 320x200+640+0", text));
+}
+
+/// Whether --counts asks for the SPD's standard render, which says itself how it is traced.
+bool parse_counts(const RenderFlags& flags) {
+  if (flags.counts.empty()) return false;
+  if (flags.counts != "spd")
+    throw usage_error(fmt::format("--counts: unknown table \"{}\"; tables: spd", flags.counts));
+  const SceneFlags& scene = flags.scene;
+  for (const auto& [flag, text] :
+       {std::pair{"--depth", &scene.depth}, std::pair{"--cutoff", &scene.cutoff},
+        std::pair{"--antialias", &scene.antialias}, std::pair{"--threshold", &scene.threshold},
+        std::pair{"--levels", &scene.levels}, std::pair{"--minimum-level", &scene.minimum_level},
+        std::pair{"--crop", &flags.crop}})
+    if (!text->empty()) throw usage_error(fmt::format("--counts spd and {} exclude each other", flag));
+  return true;
 }
 
 ProgressMode parse_progress(const std::string& text) {
@@ -215,6 +235,7 @@ std::optional<RenderCommandOptions> parse_render_options(const Words& words) {
   RenderCommandOptions options;
   options.scene = flags.scene;
   check_scene_flags(options.scene);
+  options.spd_counts = parse_counts(flags);
   options.outputs = parse_outputs(flags);
   if (!flags.crop.empty()) options.crop = parse_crop(flags.crop);
   options.threads = parse_threads(flags.threads);
@@ -263,6 +284,13 @@ std::optional<RenderCommandOptions> parse_render_options(const Words& words) {
     else if (image_on_stdout)
       throw usage_error("--stats - and -o -: standard output takes one of the two");
   }
+  if (options.spd_counts)
+    for (const auto& [taken, flag] :
+         {std::pair{options.statistics == "-", "--stats -"},
+          std::pair{std::any_of(options.outputs.begin(), options.outputs.end(),
+                                [](const OutputFile& output) { return output.path == "-"; }),
+                    "-o -"}})
+      if (taken) throw usage_error(fmt::format("--counts and {}: standard output takes one of the two", flag));
   return options;
 }
 

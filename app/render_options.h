@@ -30,7 +30,8 @@ struct RenderCommandOptions {
   ChannelSet channels;
   bool half = false;
   DisplayOptions display;
-  std::string statistics;  ///< file; "-": standard output; empty: none
+  std::string statistics;   ///< file; "-": standard output; empty: none
+  bool spd_counts = false;  ///< the standard render of the SPD, and a table of its rays on standard output
   ProgressMode progress = ProgressMode::automatic;
   bool quiet = false, verbose = false;
   Warnings warnings;  ///< flags that have no effect on what was asked for

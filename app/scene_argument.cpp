@@ -134,8 +134,7 @@ SceneDescription read_scene_argument(const SceneFlags& flags, Warnings& warnings
   std::error_code code;
   const fs::file_status status = fs::status(name, code);
   if (!fs::exists(status)) {
-    const std::vector<std::string> builtin = builtin_names();
-    if (std::find(builtin.begin(), builtin.end(), name) == builtin.end()) throw_unknown_scene(name);
+    if (!is_builtin_scene(name)) throw_unknown_scene(name);
     return builtin_scene(name);
   }
   if (fs::is_directory(status)) throw Error(ErrorKind::bad_input, {name, 0, ""}, "is a folder, not a scene");

@@ -69,7 +69,8 @@ std::string statistics_json(const RenderReport& report) {
                           {"film", report.film_bytes},
                           {"arrays", report.array_bytes},
                           {"intersector", report.intersector_bytes}};
-  json["counts"] = {{"branches_cut", trace.branches_cut},
+  json["counts"] = {{"eye_hits", trace.eye_hits},
+                    {"branches_cut", trace.branches_cut},
                     {"branches_at_depth_limit", trace.branches_at_depth_limit},
                     {"not_finite_samples", trace.not_finite_samples},
                     {"not_finite_display_values", report.display_not_finite},

@@ -9,11 +9,10 @@
 #include <thread>
 
 #include "benchmarks/child_process.h"
-#include "benchmarks/povray_scene.h"
+#include "benchmarks/povray_run.h"
 #include "benchmarks/reference_scenes.h"
 #include "benchmarks/rows.h"
 #include "geometry/error.h"
-#include "renderer/image_file.h"
 #include "renderer/render.h"
 #include "renderer/scene_reader.h"
 
@@ -21,58 +20,6 @@ namespace raytree::benchmarks {
 namespace {
 
 constexpr double kTraceRatio = 5, kRayRatio = 2.5, kAdaptiveRatio = 5, kLaunchRatio = 8;
-constexpr std::uint32_t kLargest16 = 65535;
-
-/// Red, green and blue of each pixel, in [0, 1] as a 16-bit file holds them.
-using Picture = std::vector<float>;
-
-class Povray {
- public:
-  Povray(const MeasureContext& context, const Scene& scene, PovrayPicture picture, double reach,
-         const std::string& name)
-      : scratch_(context.scratch),
-        scene_file_(context.scratch / (name + ".pov")),
-        picture_(context.scratch / (name + ".png")) {
-    write_povray_scene(scene_file_, scene, picture, reach);
-    size_ = {fmt::format("+W{}", scene.description.image.width), fmt::format("+H{}", scene.description.image.height)};
-  }
-
-  /// Renders 16 bits of linear light; `flags`: of its anti-aliasing.
-  ChildResult run(const std::vector<std::string>& flags, int threads = 1) const {
-    std::vector<std::string> words{"povray",
-                                   "+I" + scene_file_.string(),
-                                   "+O" + picture_.string(),
-                                   "+FN16",
-                                   "File_Gamma=1.0",
-                                   fmt::format("+WT{}", threads),
-                                   "-D",
-                                   "-V"};
-    words.insert(words.end(), size_.begin(), size_.end());
-    words.insert(words.end(), flags.begin(), flags.end());
-    const ChildResult child = run_child(words, scratch_);
-    require_success(child, "povray");
-    return child;
-  }
-  PovrayStatistics trace(const std::vector<std::string>& flags) const {
-    return parse_povray_statistics(run(flags).errors);
-  }
-
-  Picture picture() const {
-    const DecodedImage image = read_image_file(picture_);
-    Picture result;
-    for (const char* name : {"R", "G", "B"}) {
-      // A picture without color is written as one of brightness alone.
-      const int plane = std::max(0, image.plane_index(name));
-      const std::vector<float>& values = image.planes.at(static_cast<std::size_t>(plane));
-      result.insert(result.end(), values.begin(), values.end());
-    }
-    return result;
-  }
-
- private:
-  std::filesystem::path scratch_, scene_file_, picture_;
-  std::vector<std::string> size_;
-};
 
 struct Traced {
   double seconds = 0, rays = 0;

@@ -33,10 +33,14 @@ class Writer {
     const RenderSettings& settings = scene_.description.render;
     put("#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level {} adc_bailout {} ambient_light {} }}\n",
         settings.depth, settings.cutoff, rgb(scene_.ambient));
+    const std::vector<LightDescription>& lights = scene_.description.lights;
     write_camera();
     if (picture_ == PovrayPicture::shaded) {
       write_background();
-      for (const LightDescription& light : scene_.description.lights) write_light(light);
+      for (const LightDescription& light : lights) write_light(light);
+    } else if (picture_ == PovrayPicture::lit) {
+      if (lights.empty()) refuse("a scene without a light");
+      write_light(lights.front());
     }
     write_shapes();
     if (std::fflush(file_.get()) != 0) throw Error(ErrorKind::failure, {}, "POV-Ray's scene cannot be written whole");
@@ -90,6 +94,10 @@ class Writer {
           reach_, vector(scene_.description.cameras.front().position));
       return;
     }
+    if (picture_ == PovrayPicture::lit) {
+      put("texture {{ pigment {{ rgb 1 }} finish {{ ambient 0 diffuse 1 }} }}");
+      return;
+    }
     const bool transmits = !is_black(material.transmission);
     const bool fresnel = material.fresnel.value_or(scene_.description.render.fresnel);
     if (const auto* color = std::get_if<Rgb>(&material.diffuse)) {
@@ -133,13 +141,14 @@ class Writer {
     put("mesh2 {{ vertex_vectors {{ {}", mesh.positions.size());
     for (const Vec3f& p : mesh.positions) put(",{}", vector(Vec3d(p) + origin));
     put(" }}\n");
-    if (!mesh.normals.empty()) {
+    const bool smooth = !mesh.normals.empty() && picture_ != PovrayPicture::lit;
+    if (smooth) {
       put("normal_vectors {{ {}", mesh.normals.size());
       for (const Vec3f& n : mesh.normals) put(",{}", vector(n));
       put(" }}\n");
     }
     write_faces("face_indices", mesh.corners);
-    if (!mesh.normal_corners.empty()) write_faces("normal_indices", mesh.normal_corners);
+    if (smooth && !mesh.normal_corners.empty()) write_faces("normal_indices", mesh.normal_corners);
     write_material_of(entry.shape);
     put("}}\n");
   }
@@ -157,6 +166,13 @@ class Writer {
       put("disc {{ {}, {}, {} ", vector(Vec3d(disc.x, disc.y, disc.z) + shapes.origin), vector(shapes.discs.normal[i]),
           disc.w);
       write_material_of(shapes.discs.shape[i]);
+      put("}}\n");
+    }
+    for (std::size_t i = 0; i < shapes.cones.shape.size(); ++i) {
+      const Imath::V4f &base = shapes.cones.base_radius[i], &apex = shapes.cones.apex_radius[i];
+      put("cone {{ {}, {}, {}, {} open ", vector(Vec3d(base.x, base.y, base.z) + shapes.origin), base.w,
+          vector(Vec3d(apex.x, apex.y, apex.z) + shapes.origin), apex.w);
+      write_material_of(shapes.cones.shape[i]);
       put("}}\n");
     }
     for (const Plane& plane : shapes.planes) {

@@ -13,7 +13,10 @@ namespace raytree::benchmarks {
 enum class PovrayPicture {
   shaded,
   /// 1 - d / `reach` for a first hit at distance d from the eye, 0 where nothing is hit: no lights, no reflection.
-  nearness
+  nearness,
+  /// White where the scene's first light reaches the side that is seen, by N.L; black in its shadow and where nothing
+  /// is: flat facets, one light, no ambient light, everything opaque.
+  lit
 };
 
 /// Writes the scene to `path`. Colors stay linear (assumed_gamma 1). `reach`: for PovrayPicture::nearness, scene units.

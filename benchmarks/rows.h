@@ -26,21 +26,33 @@ std::vector<Figure> measure_idle(const MeasureContext& context);
 std::vector<Figure> measure_time_split(const MeasureContext& context);
 std::vector<Figure> measure_loading(const MeasureContext& context);
 std::vector<Figure> measure_povray(const MeasureContext& context);
+std::vector<Figure> measure_povray_masks(const MeasureContext& context);
 std::vector<Figure> measure_intersection_overhead(const MeasureContext& context);
 std::vector<Figure> measure_instances(const MeasureContext& context);
 std::vector<Figure> measure_types(const MeasureContext& context);
 std::vector<Figure> measure_curved(const MeasureContext& context);
+std::vector<Figure> measure_spd(const MeasureContext& context);
 
 struct Row {
   const char* name;
   std::vector<Figure> (*measure)(const MeasureContext&);
 };
 inline constexpr Row kRows[] = {
-    {"floor", measure_floor},         {"waves", measure_waves},     {"threads", measure_threads},
-    {"start", measure_start},         {"large", measure_large},     {"idle", measure_idle},
-    {"split", measure_time_split},    {"loading", measure_loading}, {"bench", measure_intersection_overhead},
-    {"instances", measure_instances}, {"types", measure_types},     {"curved", measure_curved},
+    {"floor", measure_floor},
+    {"waves", measure_waves},
+    {"threads", measure_threads},
+    {"start", measure_start},
+    {"large", measure_large},
+    {"idle", measure_idle},
+    {"split", measure_time_split},
+    {"loading", measure_loading},
+    {"bench", measure_intersection_overhead},
+    {"instances", measure_instances},
+    {"types", measure_types},
+    {"curved", measure_curved},
     {"povray", measure_povray},
+    {"povray-masks", measure_povray_masks},
+    {"spd", measure_spd},
 };
 
 /// What `large` compares with, measured in a process of its own (see large.cpp): generates the terrain, builds over it

@@ -1,4 +1,5 @@
-// Scenes that come with the program: the files of scenes/, compiled in, so that a fresh machine has real work.
+// Scenes that come with the program: the files of scenes/, compiled in, and the Standard Procedural Databases, which
+// are generated; so a fresh machine has real work.
 #pragma once
 
 #include <string>
@@ -14,10 +15,10 @@ struct BuiltinScene {
   std::string summary;  ///< the scene's title
 };
 
-/// All of them, by name.
+/// All of them: the files by name, then the databases ("spd-balls").
 std::vector<BuiltinScene> builtin_scenes();
 
-/// Whether `name` is one of them.
+/// Whether `name` is one of them, or a database of another size ("spd-balls:5").
 bool is_builtin_scene(std::string_view name);
 
 /// Throws Error (bad_input) that lists the names where there is none of this name.

@@ -28,7 +28,8 @@ struct Features {
   bool special_optics = kOptionalFeatures;  ///< thin sheets and conductors
   bool media = kOptionalFeatures;           ///< overlapping media by priority
   bool rough_surfaces = kOptionalFeatures;  ///< perturbed normals
-  bool facet_shading = kOptionalFeatures;   ///< interpolated light, true normals, and what keeps shadows and rays right
+  bool one_sided_surfaces = kOptionalFeatures;
+  bool facet_shading = kOptionalFeatures;  ///< interpolated light, true normals, and what keeps shadows and rays right
 };
 inline constexpr Features kFeatures;
 

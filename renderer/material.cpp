@@ -15,6 +15,8 @@ std::string material_problem(const MaterialDescription& description) {
     return "a conductor transmits nothing: transmission must be 0";
   if (description.thin && !is_black(description.absorption))
     return "a thin sheet has no inside that could absorb: put its color into transmission";
+  if (description.one_sided && !is_black(description.transmission))
+    return "what transmits is seen from both sides: one_sided or transmission, not both";
   const std::vector<AngleWeight>& table = description.highlight.weight_by_angle;
   for (std::size_t i = 1; i < table.size(); ++i)
     if (!(table[i].angle > table[i - 1].angle))
@@ -48,6 +50,7 @@ Material make_material(const MaterialDescription& description, bool fresnel, con
   material.has_transmission = !is_black(material.transmission);
   material.conductor = description.conductor;
   material.thin = description.thin && material.has_transmission;
+  material.one_sided = kFeatures.one_sided_surfaces && description.one_sided;
   material.special_optics = material.conductor || material.thin;
   material.has_reflection |= material.conductor;  // (1 - cos)^5 is left of a black k_s
   material.roughness = static_cast<float>(description.roughness);

@@ -47,7 +47,9 @@ struct Material {
   bool thin = false;              ///< a sheet without an inside
   bool has_inside = false;        ///< transmits and is not thin
   bool absorbs = false;           ///< has an inside that is not clear
-  bool takes_on_the_way = false;  ///< absorbs, or the scene tracks media or has rough surfaces: see passes()
+  bool one_sided = false;         ///< not there for rays that come from behind
+  bool takes_on_the_way =
+      false;  ///< absorbs, is one-sided, or the scene tracks media or has rough surfaces: see passes()
   bool tabled_highlight = false;  ///< W by highlight_table
   bool rough = false;             ///< has children, and facets that perturb them
   float roughness = 0;            ///< standard deviation of the facets' slopes

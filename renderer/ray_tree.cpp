@@ -24,8 +24,8 @@ namespace raytree {
 namespace {
 
 /// Whether any material can be other than plain.
-constexpr bool kAnyInvolved =
-    kFeatures.patterns || kFeatures.bumps || kFeatures.media || kFeatures.absorption || kFeatures.rough_surfaces;
+constexpr bool kAnyInvolved = kFeatures.patterns || kFeatures.bumps || kFeatures.media || kFeatures.absorption ||
+                              kFeatures.rough_surfaces || kFeatures.one_sided_surfaces;
 
 static_assert(kBatchSize <= std::size_t(1) << 16, "a ray's sample is a 16-bit number");
 
@@ -33,7 +33,7 @@ static_assert(kBatchSize <= std::size_t(1) << 16, "a ray's sample is a 16-bit nu
 /// way. With the rays' paths where some surface is rough.
 struct NewRays {
   SpawnedRays reflected, refracted;
-  SpawnedRays passed;  ///< that met a surface which separates nothing
+  SpawnedRays passed;  ///< that met a surface which separates nothing, or the back of a one-sided one
   std::vector<TreePath> reflected_paths, refracted_paths, passed_paths;
 };
 
@@ -75,7 +75,11 @@ struct SampleTracer::State {
         pending((4 + (tracks_paths() ? 2 * static_cast<std::size_t>(settings.rough_samples) : 0)) * kBatchSize),
         points(kBatchSize) {
     if (tracks_paths()) pending_paths.reserve(pending.capacity());
-    for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
+    passes_rays = tracks_media();
+    for (const Material& material : scene.materials) {
+      wants_texture |= material.needs_texture;
+      passes_rays |= material.one_sided;
+    }
     instanced = !scene.shapes->instances.empty();
     ambients.resize(kBatchSize);
     if (shades_facets()) facets.emplace(scene);
@@ -124,6 +128,7 @@ struct SampleTracer::State {
   template <class AmbientAt>
   void add_ambient(AmbientAt&& ambient_at);
   bool passes(std::size_t i, const Hit& hit);
+  void go_on_behind(std::size_t i, MediaId media_behind);
   Rgb escaping_weight(std::size_t i) const { return batch.weight(i) * media->transmitted(batch.media[i], kInfinity); }
   void add_lights();
   template <bool kFacets>
@@ -168,8 +173,9 @@ struct SampleTracer::State {
   NewRays split_rays;                   ///< that have a rough bounce behind them; these lie on top of new_rays
 
   bool wants_texture = false;
-  SampleWindow eye_window;  ///< of the chunk's eye rays
-  bool instanced = false;   ///< the scene has instances
+  SampleWindow eye_window;   ///< of the chunk's eye rays
+  bool instanced = false;    ///< the scene has instances
+  bool passes_rays = false;  ///< eye rays may go on behind what they met
 
   /// Where some facets are shaded in a way of their own.
   std::optional<FacetShading> facets;
@@ -240,7 +246,7 @@ void SampleTracer::State::trace_batch(Coherence coherence, bool eye) {
   if (tracks_paths()) add_rays_on_paths();
   add_children(RayKind::reflected, new_rays.reflected);
   add_children(RayKind::refracted, new_rays.refracted);
-  if (tracks_media()) add_children(RayKind::refracted, new_rays.passed);
+  add_children(RayKind::refracted, new_rays.passed);
   const double shadow_seconds = statistics.intersection_seconds - intersection_before;
   statistics.shading_seconds += seconds_since(hit) - shadow_seconds;
   statistics.intersection_seconds += std::chrono::duration<double>(hit - start).count();
@@ -303,6 +309,10 @@ void SampleTracer::State::collect_points(bool eye) {
     add_ambient([this](std::size_t i) { return ambients[i]; });
   else
     add_ambient([this](std::size_t i) { return plain_ambient(i); });
+  if (eye)
+    statistics.eye_hits += point_count;
+  else if (passes_rays)
+    for (const std::uint32_t i : batch_points()) statistics.eye_hits += batch.level[i] == 1;
   if (kFeatures.first_hit_channels && records.first_hits) record_first_hits();
 }
 
@@ -377,8 +387,14 @@ void SampleTracer::State::add_ambient(AmbientAt&& ambient_at) {
 [[gnu::noinline]] bool SampleTracer::State::passes(std::size_t i, const Hit& hit) {
   const bool leaving = shading.leaving[i] != 0;
   const float distance = shading.surfaces.distance[i];
+  const Material& material = *shading.materials[i];
+  if (kFeatures.one_sided_surfaces && material.one_sided && leaving) {
+    if (tracks_media()) batch.set_weight(i, batch.weight(i) * media->transmitted(batch.media[i], distance));
+    ++statistics.rays_through_backs;
+    go_on_behind(i, batch.media[i]);
+    return true;
+  }
   if (!tracks_media()) {
-    const Material& material = *shading.materials[i];
     if (material.absorbs && leaving)
       batch.set_weight(i, batch.weight(i) * transmitted_share(material.absorption, distance));
     return false;
@@ -386,14 +402,18 @@ void SampleTracer::State::add_ambient(AmbientAt&& ambient_at) {
   MediaBoundary& boundary = boundaries[i];
   boundary = media->boundary(batch.media[i], solid_at(scene, hit), leaving);
   batch.set_weight(i, batch.weight(i) * media->transmitted(boundary.before, distance));
-  if (!boundary.passes) return false;
-  if (records.first_hits && batch.level[i] == 1) results.first_hits[batch.sample[i]].distance += distance;
+  if (boundary.passes) go_on_behind(i, boundary.after);
+  return boundary.passes;
+}
+
+void SampleTracer::State::go_on_behind(std::size_t i, MediaId media_behind) {
+  if (records.first_hits && batch.level[i] == 1)
+    results.first_hits[batch.sample[i]].distance += shading.surfaces.distance[i];
   const TreePath own = tracks_paths() ? path(i) : TreePath();
   NewRays& out = own.is_split ? split_rays : new_rays;
   if (tracks_paths()) out.passed_paths.push_back(own);
   out.passed.push(child_origin(i, true), rays.direction(i),
-                  {batch.weight(i), batch.allowance[i], batch.level[i], batch.sample[i], boundary.after});
-  return true;
+                  {batch.weight(i), batch.allowance[i], batch.level[i], batch.sample[i], media_behind});
 }
 
 /// The vertices of the batch's triangles lie anywhere in memory: all are asked for before the first is used.

@@ -35,6 +35,8 @@ std::vector<TilePlace> tiles_of(const PixelWindow& window, std::uint64_t order_s
 void add(RenderStatistics& sum, const RenderStatistics& part) {
   for (int i = 0; i < kRayKindCount; ++i) sum.rays[i] += part.rays[i];
   sum.samples += part.samples;
+  sum.eye_hits += part.eye_hits;
+  sum.rays_through_backs += part.rays_through_backs;
   sum.branches_cut += part.branches_cut;
   sum.branches_at_depth_limit += part.branches_at_depth_limit;
   sum.not_finite_samples += part.not_finite_samples;

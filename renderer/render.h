@@ -20,6 +20,9 @@ inline constexpr int kRayKindCount = 4;
 struct RenderStatistics {
   std::array<std::uint64_t, kRayKindCount> rays{};  ///< traced, by RayKind
   std::uint64_t samples = 0;                        ///< of the eye
+  std::uint64_t eye_hits = 0;                       ///< of `samples`: that see something
+  std::uint64_t rays_through_backs = 0;             ///< of the refracted ones: eye, reflected and refracted rays that
+                                                    ///< go on behind the back of a one-sided surface
   std::uint64_t branches_cut = 0;                   ///< by the cutoff's allowance
   std::uint64_t branches_at_depth_limit = 0;        ///< not spawned since the tree was at its depth
   std::uint64_t not_finite_samples = 0;             ///< counted as 0

@@ -97,6 +97,7 @@ std::vector<std::string> features_in_use(const Scene& scene) {
     if (material.tabled_highlight) features.insert("highlights by angle");
     if (material.conductor) features.insert("conductors");
     if (material.thin) features.insert("thin sheets");
+    if (material.one_sided) features.insert("one-sided surfaces");
     if (material.absorbs) features.insert("absorption");
     if (material.rough) features.insert("rough surfaces");
   }
@@ -324,7 +325,7 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   for (Material& material : scene.materials) {
     material.free_reflections = free_reflections;
     material.special_optics |= free_reflections;
-    material.takes_on_the_way = material.absorbs || tracked;
+    material.takes_on_the_way = material.absorbs || material.one_sided || tracked;
     material.is_plain = !material.is_varied && !material.ambient.varies() && !material.takes_on_the_way;
     material.special_optics |= tracked;
   }

@@ -233,7 +233,9 @@ struct MaterialDescription {
   bool conductor = false;   ///< k_s is the reflectance at normal incidence and rises to 1 by Schlick's formula
   Rgb absorption{0, 0, 0};  ///< a of exp(-a t) inside, per scene unit
   bool thin = false;        ///< a sheet without an inside: transmits without bending
-  int priority = 0;         ///< among overlapping media the highest is there; 0 everywhere: media are not tracked
+  bool one_sided =
+      false;         ///< rays that come from behind go through as if nothing were there; shadows are cast all the same
+  int priority = 0;  ///< among overlapping media the highest is there; 0 everywhere: media are not tracked
   std::optional<BumpDescription> bump;
   /// Standard deviation, along any direction, of the slopes of microfacets that perturb the normal before R and P are
   /// formed; 0: polished. Light from sources has its highlight instead.

@@ -704,6 +704,12 @@ void visit_fields(Visitor& visit, T& material) {
               .text = "Whether the surface is a sheet without an inside, which transmits without bending; with fresnel "
                       "it reflects what both faces of a thin pane do, 2F / (1 + F)"},
         material.thin);
+  visit(
+      Field{.key = "one_sided",
+            .text = "Whether the surface is seen from its front alone, which the geometric normal points to: rays that "
+                    "come from behind go on as if nothing were there. Shadows are cast to both sides; it transmits "
+                    "nothing"},
+      material.one_sided);
   visit(Field{.key = "priority",
               .text =
                   "Where media overlap, that of the highest priority is there, and surfaces of the others do nothing; "

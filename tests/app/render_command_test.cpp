@@ -37,6 +37,39 @@ TEST(CommandLineRender, WritesEveryFormatFromOneRender) {
   EXPECT_EQ(run_program({"render", "-o", folder.path("c.png"), "--size", "64x48", kScene}).status, 0);
 }
 
+TEST(CommandLineRender, CountsOfTheStandardRenderStandBesideThePublishedOnes) {
+  TemporaryFolder folder;
+  const ProgramResult result = run_program({"render", "spd-tetra", "--counts", "spd", "-o", folder.path("a.exr")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::smatch parts;
+  ASSERT_TRUE(std::regex_search(result.out, parts,
+                                std::regex("^spd-tetra, 513 x 513 corner rays, 5 levels\n"
+                                           "rays +traced +published +difference\n"
+                                           "eye hits +(49,7..|49,8..) +49,788 +[-+]0.0. %\n"
+                                           "reflected +0 +0 +\\+0.00 %\nrefracted +0 +0 +\\+0.00 %\n"
+                                           "shadow +46,... +46,112 +[-+]0.0. %\n$")))
+      << result.out;
+  // The picture's pixels are the corners; what hit something is in its alpha.
+  const DecodedImage image = read_image_file(folder.path("a.exr"));
+  EXPECT_EQ(image.width, 513);
+  EXPECT_EQ(image.height, 513);
+  const std::vector<float>& alpha = image.planes.at(static_cast<std::size_t>(image.plane_index("A")));
+  std::string hits = parts[1];
+  hits.erase(hits.find(','), 1);
+  EXPECT_EQ(std::count(alpha.begin(), alpha.end(), 1.0f), std::stoi(hits));
+
+  // Of other sizes and scenes nothing was published; no picture need be written.
+  const ProgramResult small = run_program({"render", kScene, "--counts", "spd", "--size", "32x24"});
+  ASSERT_EQ(small.status, 0) << small.err;
+  EXPECT_EQ(small.out.rfind("spheres-1980, 33 x 25 corner rays, 5 levels\nrays            traced\neye hits", 0), 0u)
+      << small.out;
+
+  expect_bad_input({"render", kScene, "--counts", "rays"}, {"--counts", "rays", "spd"});
+  expect_bad_input({"render", kScene, "--counts", "spd", "--depth", "3"}, {"--counts spd and --depth exclude"});
+  expect_bad_input({"render", kScene, "--counts", "spd", "--stats", "-"}, {"--stats -", "standard output"});
+  expect_bad_input({"render", "spd-tetra:12", "-o", folder.path("b.png")}, {"spd-tetra", "from 1 to 11"});
+}
+
 TEST(CommandLineRender, StandardOutputCarriesThePictureAlone) {
   TemporaryFolder folder;
   const ProgramResult file = run_program(small_render(folder.path("a.png")));

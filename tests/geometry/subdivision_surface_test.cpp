@@ -95,6 +95,18 @@ TEST(SubdivisionSurface, VerticesOfEveryValenceMeetTheirLimitMasks) {
   }
 }
 
+// Two quads share three vertices: (n^2 v + 4 sum e + sum f) / (n (n + 5)) holds for n = 2 too, though it has no
+// tangents.
+TEST(SubdivisionSurface, AVertexOfTwoFacesMeetsItsLimitMask) {
+  PolygonMesh fold;
+  fold.positions = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}};
+  test::add_face(fold, {4, 0, 2, 1});
+  test::add_face(fold, {4, 1, 3, 0});
+  const auto surface = surface_of(fold);
+  for (const std::size_t face : {std::size_t(0), std::size_t(1)})
+    EXPECT_LE((Vec3d(sample_at(*surface, face, 0, 0).position) - Vec3d(0, 0, 4.0 / 14)).length(), 1e-6);
+}
+
 TEST(SubdivisionSurface, RegularFacesAreBicubicBSplines) {
   const PolygonMesh grid = test::grid_cage(4, 4, 1);
   const auto surface = limit_surface(grid);

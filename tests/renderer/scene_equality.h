@@ -183,12 +183,13 @@ inline bool equal(const LightDescription& a, const LightDescription& b) {
 }
 inline bool equal(const MaterialDescription& a, const MaterialDescription& b) {
   const auto& [name, diffuse, ambient, highlight, reflection, transmission, index, fresnel, conductor, absorption, thin,
-               priority, bump, roughness] = a;
+               one_sided, priority, bump, roughness] = a;
   return name == b.name && equal(diffuse, b.diffuse) && ambient.has_value() == b.ambient.has_value() &&
          (!ambient || equal(*ambient, *b.ambient)) && equal(highlight, b.highlight) && reflection == b.reflection &&
          transmission == b.transmission && index == b.index_of_refraction && fresnel == b.fresnel &&
-         conductor == b.conductor && absorption == b.absorption && thin == b.thin && priority == b.priority &&
-         bump.has_value() == b.bump.has_value() && (!bump || equal(*bump, *b.bump)) && roughness == b.roughness;
+         conductor == b.conductor && absorption == b.absorption && thin == b.thin && one_sided == b.one_sided &&
+         priority == b.priority && bump.has_value() == b.bump.has_value() && (!bump || equal(*bump, *b.bump)) &&
+         roughness == b.roughness;
 }
 /// All but where it stood in its file.
 inline bool equal(const std::optional<Smoothing>& a, const std::optional<Smoothing>& b) {

@@ -46,7 +46,7 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(BumpDescription{}), 8);
   EXPECT_EQ(count(AngleWeight{}), 2);
   EXPECT_EQ(count(HighlightDescription{}), 3);
-  EXPECT_EQ(count(MaterialDescription{}), 14 - 1 + 1) << "without name, with \"from\"";
+  EXPECT_EQ(count(MaterialDescription{}), 15 - 1 + 1) << "without name, with \"from\"";
   EXPECT_EQ(count(FaceGroup{}), 4);
   EXPECT_EQ(count(MeshShape{}), 5);
   EXPECT_EQ(count(SubdivisionRules{}), 9);

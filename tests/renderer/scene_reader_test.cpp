@@ -104,8 +104,8 @@ TEST(SceneReader, RefusalsSayWhatWhereAndWhatWouldBeRight) {
   EXPECT_EQ(
       refusal("\"materials\": {\n \"glass\": {\n  \"difuse\": 1}}"),
       "s.json:4: materials.glass: unknown key \"difuse\"; known keys: from, diffuse, ambient, highlight, reflection, "
-      "transmission, index_of_refraction, fresnel, conductor, absorption, thin, priority, bump, roughness (did you "
-      "mean \"diffuse\"?)");
+      "transmission, index_of_refraction, fresnel, conductor, absorption, thin, one_sided, priority, bump, roughness "
+      "(did you mean \"diffuse\"?)");
   EXPECT_EQ(refusal("\"lights\": {\"sun\": {\n\"type\": \"direct\"}}"),
             "s.json:3: lights.sun.type: unknown type \"direct\"; known types: directional, point, spot (did you mean "
             "\"directional\"?)");

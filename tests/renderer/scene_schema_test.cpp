@@ -133,7 +133,7 @@ Json rich_document() {
                                     "smooth": true, "space": "uv", "offset": [0, 0, 0], "filtered": true},
                         "highlight": {"weight": 1, "exponent": 2}, "reflection": 0, "transmission": 0,
                         "index_of_refraction": 1.5, "conductor": false, "absorption": [0, 1, 2], "thin": false,
-                        "priority": 1, "roughness": 0.1},
+                        "one_sided": true, "priority": 1, "roughness": 0.1},
                   "n": {"diffuse": {"type": "noise", "low": 1, "high": 0, "size": 1, "octaves": 2, "gain": 0.5, "contrast": 1,
                                     "seed": 7, "space": "world", "offset": [0, 0, 0], "filtered": true},
                         "bump": {"kind": "ripples", "amplitude": -0.1, "size": 1, "octaves": 2, "gain": 0.5, "seed": 1,
@@ -163,11 +163,26 @@ Json rich_document() {
 
 /// Where messages of the reader speak of what a schema cannot say.
 bool beyond_a_schema(const std::string& message) {
-  for (const char* text :
-       {"unknown material", "too many", "same point", "line of sight", "not invertible", "index ", "not in the shape",
-        " positions; give", "not affine", "overlap the group", "conductor transmits", "thin sheet has no inside",
-        "weight_by_angle: angle", "unknown group", "unknown terrain", "may not hold itself", "a plane has no bounds",
-        "is larger than largest_scale", "lies above highest"})
+  for (const char* text : {"unknown material",
+                           "too many",
+                           "same point",
+                           "line of sight",
+                           "not invertible",
+                           "index ",
+                           "not in the shape",
+                           " positions; give",
+                           "not affine",
+                           "overlap the group",
+                           "conductor transmits",
+                           "thin sheet has no inside",
+                           "seen from both sides",
+                           "weight_by_angle: angle",
+                           "unknown group",
+                           "unknown terrain",
+                           "may not hold itself",
+                           "a plane has no bounds",
+                           "is larger than largest_scale",
+                           "lies above highest"})
     if (message.find(text) != message.npos) return true;
   return false;
 }

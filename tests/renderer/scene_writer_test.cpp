@@ -170,7 +170,7 @@ class Randomizer {
   }
   /// What material_problem() refuses cannot be read back.
   static void make_sound(MaterialDescription& material) {
-    if (material.conductor) material.transmission = Rgb();
+    if (material.conductor || material.one_sided) material.transmission = Rgb();
     if (material.thin) material.absorption = Rgb();
     ASSERT_EQ(material_problem(material), "");
   }
