@@ -5,12 +5,12 @@
 
 #include <chrono>
 
+#include "geometry/stopwatch.h"
 #include "renderer/machine.h"
 
 namespace raytree::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 const Clock::time_point kLaunch = Clock::now();
 
 }  // namespace
@@ -28,6 +28,6 @@ std::uint64_t peak_memory_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
-double seconds_since_launch() { return std::chrono::duration<double>(Clock::now() - kLaunch).count(); }
+double seconds_since_launch() { return seconds_since(kLaunch); }
 
 }  // namespace raytree::app

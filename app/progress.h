@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 
+#include "geometry/stopwatch.h"
 #include "renderer/render.h"
 
 namespace raytree::app {
@@ -33,7 +34,6 @@ class Progress {
   void abandon() noexcept;
 
  private:
-  using Clock = std::chrono::steady_clock;
   void draw(const std::string& line);
 
   ProgressMode mode_;

@@ -15,9 +15,9 @@
 #include "app/render_options.h"
 #include "app/spd_counts_text.h"
 #include "app/statistics_json.h"
+#include "geometry/stopwatch.h"
 #include "renderer/film_image.h"
 #include "renderer/spd_counts.h"
-#include "renderer/stopwatch.h"
 
 namespace raytree::app {
 namespace {

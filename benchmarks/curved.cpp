@@ -13,6 +13,7 @@
 #include "geometry/embree_kinds.h"
 #include "geometry/patch_surface.h"
 #include "geometry/polygon_mesh.h"
+#include "geometry/stopwatch.h"
 #include "geometry/subdivision_refinement.h"
 #include "geometry/subdivision_surface.h"
 #include "geometry/tessellation.h"
@@ -21,7 +22,6 @@
 namespace raytree::benchmarks {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Surface = std::unique_ptr<ParametricSurface>;
 
 constexpr double kLeastRegular = 6, kLeastIrregular = 4;  // million points a second and core
@@ -32,7 +32,7 @@ constexpr double kMillion = 1e6;
 double seconds_of(const std::function<void()>& work) {
   const auto start = Clock::now();
   work();
-  return std::chrono::duration<double>(Clock::now() - start).count();
+  return seconds_since(start);
 }
 
 Vec3f on_torus(double a, double b) {

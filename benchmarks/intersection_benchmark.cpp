@@ -10,14 +10,13 @@
 #include <numeric>
 
 #include "benchmarks/recording_intersector.h"
+#include "geometry/stopwatch.h"
 #include "geometry/surface.h"
 #include "renderer/float_mode.h"
 #include "renderer/optics.h"
 
 namespace raytree::benchmarks {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr float kForever = std::numeric_limits<float>::infinity();
 constexpr float kGlassIndex = 1.5f;
@@ -75,7 +74,7 @@ PassResult pass(const RaySet& rays, int threads, const Ask& ask, const Look& loo
                           const RayBatch& batch = warmed(rays.batches[i]);
                           const auto start = Clock::now();
                           ask(batch);
-                          results[i].seconds = std::chrono::duration<double>(Clock::now() - start).count();
+                          results[i].seconds = seconds_since(start);
                           look(batch, results[i]);
                         }
                       });

@@ -12,8 +12,8 @@
 #include "benchmarks/reference_scenes.h"
 #include "benchmarks/rows.h"
 #include "geometry/error.h"
+#include "geometry/stopwatch.h"
 #include "geometry/terrain.h"
-#include "renderer/stopwatch.h"
 
 namespace raytree::benchmarks {
 namespace {

@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "geometry/mesh_file.h"
+#include "geometry/stopwatch.h"
 #include "geometry/vertex_normals.h"
-#include "renderer/stopwatch.h"
 
 namespace {
 

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "geometry/stopwatch.h"
+
 namespace raytree::benchmarks {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 double quantile(const std::vector<double>& sorted, double q) {
@@ -72,7 +73,7 @@ PairedSpread measure_pairs(const std::function<double()>& a, const std::function
     if (pair + 1 < limits.least) continue;
     const Spread ratio = spread_of(ratios);
     const double uncertainty = (ratio.high - ratio.low) / ratio.median / std::sqrt(static_cast<double>(ratio.count));
-    const double spent = std::chrono::duration<double>(Clock::now() - start).count();
+    const double spent = seconds_since(start);
     if (uncertainty <= limits.enough && spent >= limits.least_seconds) break;
   }
   return {spread_of(of_a), spread_of(of_b), spread_of(ratios)};

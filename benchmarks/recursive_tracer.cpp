@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "geometry/ray_batch.h"
+#include "geometry/stopwatch.h"
 #include "renderer/float_mode.h"
 #include "renderer/media.h"
 #include "renderer/shading.h"
@@ -169,7 +170,7 @@ RecursiveResult render_recursively(const Scene& scene, const EmbreeIntersector& 
   const int columns = (width + kTileSize - 1) / kTileSize, rows = (height + kTileSize - 1) / kTileSize;
   RecursiveResult result;
   result.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   tbb::task_arena arena(threads);
   tbb::enumerable_thread_specific<Tracer> tracers([&] { return Tracer(scene, intersector); });
   arena.execute([&] {
@@ -191,7 +192,7 @@ RecursiveResult render_recursively(const Scene& scene, const EmbreeIntersector& 
   });
   for (const Tracer& tracer : tracers)
     for (std::size_t i = 0; i < kRayKindCount; ++i) result.rays[i] += tracer.rays[i];
-  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.wall_seconds = seconds_since(start);
   return result;
 }
 

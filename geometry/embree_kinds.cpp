@@ -5,13 +5,10 @@
 #include <limits>
 
 #include "geometry/embree_api.h"
+#include "geometry/stopwatch.h"
 
 namespace raytree {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 bool count_bytes(void* total, ssize_t bytes, bool) {
   *static_cast<std::atomic<std::ptrdiff_t>*>(total) += bytes;

@@ -7,13 +7,13 @@
 #include "geometry/embree_packets.h"
 #include "geometry/embree_state.h"
 #include "geometry/few_shapes.h"
+#include "geometry/stopwatch.h"
 
 namespace raytree {
 namespace {
 
 using embree::PacketTypes;
 using embree::Query;
-using Clock = std::chrono::steady_clock;
 using Ray = RayRecord::Ray;
 
 /// Rays per look at the clock: their packets stay in the first-level cache, and a look (some 25 ns) is under 1 % of
@@ -57,7 +57,7 @@ class Replayer {
         work_.single_ray_hits[i] = embree::single_ray_hit(rays[i].origin, rays[i].direction, rays[i].max_distance);
       const auto start = Clock::now();
       for (std::size_t i = 0; i < size; ++i) query.intersect(scene_, work_.single_ray_hits[i]);
-      seconds = since(start);
+      seconds = seconds_since(start);
       for (std::size_t i = 0; i < size; ++i)
         hits += work_.single_ray_hits[i].hit.geomID != RTC_INVALID_GEOMETRY_ID || stopped(i);
       return seconds;
@@ -68,7 +68,7 @@ class Replayer {
     });
     const auto start = Clock::now();
     for (std::size_t p = 0; p < packets; ++p) query.intersect(scene_, work_.valid[p], work_.ray_hits[p]);
-    seconds = since(start);
+    seconds = seconds_since(start);
     for (std::size_t i = 0; i < size; ++i)
       hits += work_.ray_hits[i / Width].hit.geomID[i % Width] != RTC_INVALID_GEOMETRY_ID || stopped(i);
     return seconds;
@@ -84,7 +84,7 @@ class Replayer {
         work_.single_rays[i] = embree::single_ray(rays[i].origin, rays[i].direction, rays[i].max_distance);
       const auto start = Clock::now();
       for (std::size_t i = 0; i < size; ++i) query.occluded(scene_, work_.single_rays[i]);
-      seconds = since(start);
+      seconds = seconds_since(start);
       for (std::size_t i = 0; i < size; ++i) hits += work_.single_rays[i].tfar < 0 || stopped(i);
       return seconds;
     }
@@ -92,14 +92,12 @@ class Replayer {
         rays, size, [&](std::size_t packet, int lane, const Ray& ray) { set_lane(work_.rays[packet], lane, ray); });
     const auto start = Clock::now();
     for (std::size_t p = 0; p < packets; ++p) query.occluded(scene_, work_.valid[p], work_.rays[p]);
-    seconds = since(start);
+    seconds = seconds_since(start);
     for (std::size_t i = 0; i < size; ++i) hits += work_.rays[i / Width].tfar[i % Width] < 0 || stopped(i);
     return seconds;
   }
 
  private:
-  static double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
   template <class SetLane>
   std::size_t fill(const Ray* rays, std::size_t size, SetLane&& set) {
     const std::size_t packets = (size + Width - 1) / Width;

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "geometry/ray_batch.h"
+#include "geometry/stopwatch.h"
 #include "geometry/surface_batch.h"
 #include "renderer/facet_shading.h"
 #include "renderer/features.h"
@@ -18,7 +19,6 @@
 #include "renderer/shading.h"
 #include "renderer/shading_batch.h"
 #include "renderer/shadow_path.h"
-#include "renderer/stopwatch.h"
 
 namespace raytree {
 namespace {

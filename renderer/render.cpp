@@ -12,6 +12,7 @@
 #include <random>
 #include <vector>
 
+#include "geometry/stopwatch.h"
 #include "renderer/float_mode.h"
 #include "renderer/tile_tracer.h"
 
@@ -64,7 +65,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
 
   RenderResult result{Film(image.width, image.height, window, options.channels), {}, true};
   const std::vector<TilePlace> tiles = tiles_of(window, options.tile_order_seed);
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
 
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   tbb::enumerable_thread_specific<TileTracer> tracers([&] { return TileTracer(scene, options, result.film); });
@@ -100,7 +101,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
 
   for (const TileTracer& tracer : tracers) add(result.statistics, tracer.statistics());
   result.statistics.threads = arena.max_concurrency();
-  result.statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.statistics.wall_seconds = seconds_since(start);
   result.complete = complete;
   return result;
 }

@@ -9,11 +9,11 @@
 
 #include "geometry/embree_intersector.h"
 #include "geometry/open_edges.h"
+#include "geometry/stopwatch.h"
 #include "renderer/groups.h"
 #include "renderer/scene_fields.h"
 #include "renderer/shape_assembly.h"
 #include "renderer/shape_shading.h"
-#include "renderer/stopwatch.h"
 #include "renderer/tracer_choice.h"
 
 namespace raytree {

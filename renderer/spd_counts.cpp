@@ -3,9 +3,9 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 #include <set>
 
+#include "geometry/angle.h"
 #include "renderer/spd_scenes.h"
 
 namespace raytree {
@@ -72,8 +72,8 @@ std::optional<SpdCounts> published_spd_counts(const SceneDescription& scene) {
 void set_standard_spd_render(SceneDescription& scene) {
   const double growth = (scene.image.height + 1.0) / scene.image.height;
   for (CameraDescription& camera : scene.cameras) {
-    const double half = camera.field_of_view * std::numbers::pi / 360;
-    camera.field_of_view = std::atan(std::tan(half) * growth) * 360 / std::numbers::pi;
+    const double half = camera.field_of_view * kPi / 360;
+    camera.field_of_view = std::atan(std::tan(half) * growth) * 360 / kPi;
     camera.height *= growth;
   }
   ++scene.image.width;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angle.h"
+
 namespace raytree {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 std::shared_ptr<PolygonMesh> triangles_of(std::vector<Vec3f>&& positions, std::vector<std::uint32_t>&& corners) {
   auto mesh = std::make_shared<PolygonMesh>();

@@ -4,17 +4,15 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/sphere_flake.h"
 #include "renderer/builtin_scenes.h"
 #include "renderer/spd_meshes.h"
 
 namespace raytree {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 constexpr SpdEntry kEntries[] = {
     {SpdDatabase::balls, "balls", "SPD balls: a sphere-flake of mirrors on a floor; size: its levels", 4,
@@ -31,7 +29,7 @@ constexpr SpdEntry kEntries[] = {
 };
 
 /// The exponent whose highlight falls to a half at such an angle.
-double exponent_of(double degrees) { return std::log(0.5) / std::log(std::cos(degrees * kPi / 180)); }
+double exponent_of(double degrees) { return std::log(0.5) / std::log(std::cos(degrees * kDegree)); }
 constexpr double kNoHighlight = 100000;  ///< the exponent that the programs write then
 
 class SceneBuilder {
@@ -264,8 +262,8 @@ void grow_branch(const Matrix44d& space, double radius, int generations, SceneBu
   scene.add_sphere(apex, thinner);
   if (generations == 0) return;
   for (const Side& side : kSides) {
-    const Matrix44d turn = Matrix44d().rotate(Vec3d(side.angle * kPi / 180, 0, 0)) *
-                           Matrix44d().rotate(Vec3d(0, 0, side.divergence * kPi / 180));
+    const Matrix44d turn = Matrix44d().rotate(Vec3d(side.angle * kDegree, 0, 0)) *
+                           Matrix44d().rotate(Vec3d(0, 0, side.divergence * kDegree));
     const Matrix44d shrink = Matrix44d().scale(Vec3d(side.contraction)) * Matrix44d().translate(Vec3d(0, 0, 1));
     grow_branch(turn * shrink * space, thinner, generations - 1, scene);
   }

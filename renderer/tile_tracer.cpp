@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "geometry/stopwatch.h"
 #include "renderer/features.h"
 
 namespace raytree {
@@ -31,7 +32,7 @@ TileTracer::TileTracer(const Scene& scene, const RenderOptions& options, Film& f
 }
 
 bool TileTracer::trace(int x0, int y0) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const Antialiasing& antialias = scene_.description.render.antialias;
   sums_.clear();
   if (adaptive_) {
@@ -42,8 +43,7 @@ bool TileTracer::trace(int x0, int y0) {
     if (!trace_grid(x0, y0, grid)) return false;
     sums_.resolve(x0, y0, grid * grid, film_);
   }
-  samples_.statistics().thread_seconds +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  samples_.statistics().thread_seconds += seconds_since(start);
   return true;
 }
 

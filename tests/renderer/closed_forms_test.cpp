@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "geometry/angle.h"
 #include "geometry/ray_batch.h"
 #include "tests/renderer/test_scenes.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kRing = 2, kTube = 0.75;  ///< R and r
 constexpr int kRate = 64;                  ///< segments of a quarter, around and along
 

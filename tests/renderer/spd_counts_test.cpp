@@ -5,8 +5,8 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "renderer/scene.h"
 #include "renderer/spd_scenes.h"
 #include "tests/renderer/test_scenes.h"
@@ -78,7 +78,7 @@ TEST(SpdCounts, EyeRaysGoThroughTheCornersOfPixelsOnce) {
     SceneDescription scene = dark_scene(64, front_camera(2));
     if (perspective) {
       scene.cameras[0].projection = CameraDescription::Projection::perspective;
-      scene.cameras[0].field_of_view = 2 * std::atan(0.1) * 180 / std::numbers::pi;
+      scene.cameras[0].field_of_view = 2 * std::atan(0.1) / kDegree;
     }
     scene.image = {96, 64};
     // A white wall exactly as large as the window, and a little: its border is met by the outermost rays.
