@@ -19,6 +19,6 @@ struct SceneRun {
 
 /// Loads and prepares the scene and hands it to `use`, all on that many threads. Returns the exit status: success, or
 /// the one that says which signal came, whose consequences are then not reported as errors. Throws Error.
-int with_prepared_scene(const SceneRun& run, const std::function<void(const Scene&, const Interruption&)>& use);
+int with_prepared_scene(const SceneRun& run, const std::function<void(Scene&, const Interruption&)>& use);
 
 }  // namespace raytree::app

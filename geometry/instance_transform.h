@@ -38,6 +38,11 @@ class InstanceTransform {
 
   Vec3d point(const Vec3d& p) const { return x_ * p.x + y_ * p.y + z_ * p.z + origin_; }
   Vec3d vector(const Vec3d& v) const { return x_ * v.x + y_ * v.y + z_ * v.z; }
+  /// The ways back, from scene to group space.
+  Vec3d inverse_vector(const Vec3d& v) const {
+    return Vec3d(minor_[0].dot(v), minor_[1].dot(v), minor_[2].dot(v)) * (1 / determinant_);
+  }
+  Vec3d inverse_point(const Vec3d& p) const { return inverse_vector(p - origin_); }
   /// Of any length: normals go by the inverse transpose, which the minors are but for the determinant. A mirroring
   /// transform turns triangles over and their normals with them, so the outside stays outside.
   Vec3d normal(const Vec3d& n) const {

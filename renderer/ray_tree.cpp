@@ -78,6 +78,7 @@ struct SampleTracer::State {
         shadow_light(kBatchSize),
         pending((4 + (tracks_paths() ? 2 * static_cast<std::size_t>(settings.rough_samples) : 0)) * kBatchSize),
         points(kBatchSize) {
+    shadow_rays.sample = shadow_samples.data();
     if (tracks_paths()) pending_paths.reserve(pending.capacity());
     for (const Material& material : scene.materials) wants_texture |= material.needs_texture;
     instanced = !scene.shapes->instances.empty();
@@ -156,7 +157,7 @@ struct SampleTracer::State {
   HitBatch hits;
   RayBatch shadow_rays;
   std::vector<std::uint8_t> occluded;
-  std::vector<std::uint32_t> shadow_samples;
+  std::vector<std::uint16_t> shadow_samples;
   std::vector<Rgb> shadow_light;  ///< what a shadow ray brings when nothing is in its way
 
   RayQueue pending;  ///< the newest rays are traced first
