@@ -17,17 +17,29 @@ namespace {
 using benchmarks::ValidationOptions;
 using benchmarks::ValidationReport;
 
+constexpr const char* kInPlace = "-";
+
 struct ValidateOptions {
   SceneFlags scene;
   std::vector<std::string> scenes;
   std::int64_t pixels = 10000;  ///< 0: all
   int threads = 0;
-  std::string picture;    ///< file; empty: none
-  bool json = false;      ///< in place of the text, unless json_file
-  std::string json_file;  ///< beside the text
-  bool table = false;     ///< a line of Markdown for each scene in place of the text
+  std::string picture;  ///< file; empty: none
+  std::string json;     ///< file beside the text; kInPlace: in place of it; empty: none
+  bool table = false;   ///< a line of Markdown for each scene in place of the text
   bool quiet = false;
 };
+
+/// --json without a name, before another flag or at the end, is given the name that stands for none.
+Words with_json_value(const Words& words) {
+  Words result;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    result.push_back(words[i]);
+    if (words[i] == "--json" && (i + 1 == words.size() || (words[i + 1].size() > 1 && words[i + 1][0] == '-')))
+      result.emplace_back(kInPlace);
+  }
+  return result;
+}
 
 std::optional<ValidateOptions> parse_validate_options(const Words& words) {
   ValidateOptions options;
@@ -46,23 +58,20 @@ std::optional<ValidateOptions> parse_validate_options(const Words& words) {
   command.add_flag("--full", full, "Compare the trees of all pixels");
   command.add_option("-o,--output", options.picture, "Picture with the disagreements marked (.png)")->type_name("FILE");
   command.add_flag("--table", options.table, "Print a table of Markdown, a line for each scene");
-  CLI::Option* const json =
-      command.add_option("--json", options.json_file, "Print JSON; with a name, write it to that file")
-          ->type_name("[FILE]")
-          ->expected(0, 1);
+  command.add_option("--json", options.json, "Print JSON; with a name, write it to that file beside the text")
+      ->type_name("[FILE]");
   add_scene_flags(command, options.scene, false);
   add_hierarchy_flags(command, options.scene);
   command.add_option("--threads", threads, "Threads; default: all. The report does not depend on it")->type_name("N");
   command.add_flag("--quiet", options.quiet, "No warnings");
   prepare_usage(command);
-  if (!parse_usage(command, words)) return std::nullopt;
+  if (!parse_usage(command, with_json_value(words))) return std::nullopt;
   options.scene.antialias = "none";
-  options.json = json->count() > 0;
   if (options.scenes.empty()) options.scenes.emplace_back();
   if (options.scenes.size() > 1 && !options.table)
     throw usage_error(
         fmt::format("unexpected argument \"{}\": several scenes are compared with --table", options.scenes[1]));
-  if (options.table && (options.json || !options.picture.empty()))
+  if (options.table && (!options.json.empty() || !options.picture.empty()))
     throw usage_error("--table prints a table and nothing else: leave -o and --json away");
   options.scene.scene = options.scenes.front();
   check_scene_flags(options.scene);
@@ -75,15 +84,15 @@ std::optional<ValidateOptions> parse_validate_options(const Words& words) {
       throw usage_error(fmt::format("-o: {} does not end in .png", options.picture));
     check_writable(options.picture);
   }
-  if (!options.json_file.empty()) check_writable(options.json_file);
+  if (!options.json.empty() && options.json != kInPlace) check_writable(options.json);
   return options;
 }
 
 void write_report(const ValidateOptions& options, const ValidationReport& report) {
   if (options.table) return print_result(benchmarks::validation_table_line(report));
-  const std::string json = options.json ? benchmarks::report_json(report) : "";
-  print_result(options.json && options.json_file.empty() ? json : benchmarks::report_text(report));
-  if (!options.json_file.empty()) write_file_atomically(options.json_file, json.data(), json.size());
+  const std::string json = options.json.empty() ? "" : benchmarks::report_json(report);
+  print_result(options.json == kInPlace ? json : benchmarks::report_text(report));
+  if (!options.json.empty() && options.json != kInPlace) write_file_atomically(options.json, json.data(), json.size());
   if (options.picture.empty()) return;
   std::array<std::vector<std::uint8_t>, 3> planes;
   const std::vector<std::byte> bytes = encode_image(benchmarks::marked_image(report, planes), ImageFormat::png);
