@@ -146,7 +146,8 @@ class Search {
     hit_ = hit, found_ = true, limit_ = hit.distance;
   }
 
-  /// Newton's iteration on P(u, v) = origin + t direction, taken where it ends in the part or within half of it beside.
+  /// Newton's iteration on P(u, v) = origin + t direction, taken where it ends in the part or up to two of them beside:
+  /// the planes about a part may let pass what its neighbor then meets.
   void polish(const Part& part, const RayInterval& interval, PatchHit& hit) const {
     constexpr int kMostSteps = 8;
     double u = hit.u, v = hit.v, t = hit.distance, last = std::numeric_limits<double>::infinity();
@@ -162,10 +163,12 @@ class Search {
       const double dt = normal.dot(off) / determinant;
       const double moved = std::max(std::abs(du), std::abs(dv));
       u += du, v += dv, t += dt;
-      if (!(std::abs(u - hit.u) <= part.size && std::abs(v - hit.v) <= part.size)) return;
+      if (!(std::abs(u - hit.u) <= 2 * part.size && std::abs(v - hit.v) <= 2 * part.size)) return;
       u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1.0);
       if (moved <= 0x1p-48 || (moved >= last && moved <= 0x1p-40)) {
-        if (t >= interval.enter && t <= interval.leave) hit = {t, u, v, hit.level};
+        // Not before the part: what is skipped for beginning behind another hit must not lie in front of it.
+        const double across = 2 * part.sphere.radius * std::sqrt(ray_.inverse_square);
+        if (t >= interval.enter && t <= interval.leave + across) hit = {t, u, v, hit.level};
         return;
       }
       last = moved;
