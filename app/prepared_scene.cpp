@@ -21,9 +21,9 @@ int with_prepared_scene(const SceneRun& run, const std::function<void(Scene&, co
       options.threads = run.threads;
       options.stop = &interruption.stop();
       options.build = run.build;
-      options.hierarchy = run.scene.hierarchy;
-      options.memory_allowed = parse_memory(run.scene.memory);
+      apply_tracer_flags(run.scene, options);
       options.measure_tessellation = run.measure_tessellation;
+      options.keep_sources = run.keep_sources;
       Scene scene = prepare(std::move(description), options, warnings);
       if (!run.quiet) print_warnings(warnings, true);
       use(scene, interruption);

@@ -15,6 +15,7 @@ struct SceneRun {
   bool build = true;   ///< with its tracer
   bool quiet = false;  ///< no warnings
   bool measure_tessellation = false;
+  bool keep_sources = false;  ///< see PrepareOptions
 };
 
 /// Loads and prepares the scene and hands it to `use`, all on that many threads. Returns the exit status: success, or

@@ -12,9 +12,9 @@
 #include "app/messages.h"
 #include "app/prepared_scene.h"
 #include "app/render_options.h"
+#include "app/truth.h"
 #include "benchmarks/validation.h"
 #include "geometry/surface.h"
-#include "geometry/triangle_reference.h"
 
 namespace raytree::app {
 namespace {
@@ -26,6 +26,7 @@ using benchmarks::RayJudge;
 struct RayOptions {
   SceneFlags scene;
   ComparedRay ray;
+  std::string truth = kTriangleTruth;
   bool quiet = false;
 };
 
@@ -58,6 +59,7 @@ std::optional<RayOptions> parse_ray_options(const Words& words) {
       ->type_name("")
       ->expected(0, 2);
   command.add_option("--end", end, "Distance at which the ray ends; default: nowhere")->type_name("T");
+  add_truth_flag(command, options.truth);
   add_scene_flags(command, options.scene, false);
   add_hierarchy_flags(command, options.scene);
   command.add_flag("--quiet", options.quiet, "No warnings");
@@ -72,6 +74,7 @@ std::optional<RayOptions> parse_ray_options(const Words& words) {
       others.push_back(word);
   if (!parse_usage(command, others)) return std::nullopt;
   check_scene_flags(options.scene);
+  check_truth(options.truth);
   if (vectors.size() != 2)
     throw usage_error(
         fmt::format("two vectors x,y,z follow the scene, origin and direction; {} given", vectors.size()));
@@ -107,9 +110,9 @@ std::string truth_text(const Scene& scene, const ReferenceHit& hit) {
                      hit.normal.x, hit.normal.y, hit.normal.z);
 }
 
-std::string answers(const Scene& scene, const ComparedRay& ray) {
-  const TriangleReference truth(*scene.shapes);
-  const RayJudge judge(*scene.shapes, *scene.intersector, *scene.shapes, truth);
+std::string answers(const Scene& scene, const ComparedRay& ray, const std::string& truth_name) {
+  const std::unique_ptr<const ReferenceTracer> truth = make_truth(truth_name, scene, nullptr);
+  const RayJudge judge(*scene.shapes, *scene.intersector, *scene.shapes, *truth, facet_tolerance(truth_name, scene));
   RayBatch rays(1);
   HitBatch hits(1);
   rays.push(ray.origin, ray.direction, ray.max_distance);
@@ -141,8 +144,10 @@ std::string answers(const Scene& scene, const ComparedRay& ray) {
 int ray_command(const Words& words) {
   const std::optional<RayOptions> options = parse_ray_options(words);
   if (!options) return kSuccess;
-  return with_prepared_scene({options->scene, 1, true, options->quiet},
-                             [&](Scene& scene, const Interruption&) { print_result(answers(scene, options->ray)); });
+  SceneRun run{options->scene, 1, true, options->quiet};
+  run.keep_sources = options->truth == kSphereTruth;
+  return with_prepared_scene(
+      run, [&](Scene& scene, const Interruption&) { print_result(answers(scene, options->ray, options->truth)); });
 }
 
 }  // namespace raytree::app

@@ -8,8 +8,8 @@
 #include "app/messages.h"
 #include "app/prepared_scene.h"
 #include "app/render_options.h"
+#include "app/truth.h"
 #include "benchmarks/validation.h"
-#include "geometry/triangle_reference.h"
 
 namespace raytree::app {
 namespace {
@@ -24,6 +24,7 @@ struct ValidateOptions {
   std::vector<std::string> scenes;
   std::int64_t pixels = 10000;  ///< 0: all
   int threads = 0;
+  std::string truth = kTriangleTruth;
   std::string picture;  ///< file; empty: none
   std::string json;     ///< file beside the text; kInPlace: in place of it; empty: none
   bool table = false;   ///< a line of Markdown for each scene in place of the text
@@ -56,6 +57,7 @@ std::optional<ValidateOptions> parse_validate_options(const Words& words) {
       ->type_name("");
   command.add_option("--rays", pixels, "Compare the trees of about so many eye rays; default: 10000")->type_name("N");
   command.add_flag("--full", full, "Compare the trees of all pixels");
+  add_truth_flag(command, options.truth);
   command.add_option("-o,--output", options.picture, "Picture with the disagreements marked (.png)")->type_name("FILE");
   command.add_flag("--table", options.table, "Print a table of Markdown, a line for each scene");
   command.add_option("--json", options.json, "Print JSON; with a name, write it to that file beside the text")
@@ -67,6 +69,7 @@ std::optional<ValidateOptions> parse_validate_options(const Words& words) {
   prepare_usage(command);
   if (!parse_usage(command, with_json_value(words))) return std::nullopt;
   options.scene.antialias = "none";
+  check_truth(options.truth);
   if (options.scenes.empty()) options.scenes.emplace_back();
   if (options.scenes.size() > 1 && !options.table)
     throw usage_error(
@@ -108,17 +111,19 @@ int validate_command(const Words& words) {
   bool holds = true;
   for (const std::string& scene_name : options->scenes) {
     options->scene.scene = scene_name;
-    const int status = with_prepared_scene(
-        {options->scene, options->threads, true, options->quiet}, [&](Scene& scene, const Interruption& interruption) {
-          const TriangleReference truth(*scene.shapes);
-          ValidationOptions validation;
-          validation.pixels = static_cast<std::uint64_t>(options->pixels);
-          validation.stop = &interruption.stop();
-          const ValidationReport report = validate(scene, *scene.shapes, truth, validation);
-          if (!report.complete) return;
-          write_report(*options, report);
-          holds &= report.holds();
-        });
+    SceneRun run{options->scene, options->threads, true, options->quiet};
+    run.keep_sources = options->truth == kSphereTruth;
+    const int status = with_prepared_scene(run, [&](Scene& scene, const Interruption& interruption) {
+      ValidationOptions validation;
+      validation.pixels = static_cast<std::uint64_t>(options->pixels);
+      validation.tolerance = facet_tolerance(options->truth, scene);
+      validation.stop = &interruption.stop();
+      const std::unique_ptr<const ReferenceTracer> truth = make_truth(options->truth, scene, validation.stop);
+      const ValidationReport report = validate(scene, *scene.shapes, *truth, validation);
+      if (!report.complete) return;
+      write_report(*options, report);
+      holds &= report.holds();
+    });
     if (status != kSuccess) return status;
   }
   return holds ? kSuccess : kFallsShort;

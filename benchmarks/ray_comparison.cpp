@@ -25,7 +25,7 @@ RayVerdict excuse(const SurfaceBounds& bounds) {
 }
 
 RayComparison comparison(RayVerdict verdict, const SurfaceBounds& bounds) {
-  return {verdict, 0, bounds.edge_distance, bounds.edge_error, bounds.distance_error};
+  return {verdict, 0, bounds.edge_distance, bounds.edge_error, bounds.distance_error, bounds.position_error};
 }
 
 }  // namespace
@@ -78,17 +78,69 @@ RayComparison RayJudge::extra(const ComparedRay& ray, const SurfaceBounds& bound
 }
 
 RayComparison RayJudge::nearest(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found) const {
+  const RayComparison result = nearest_on_facets(ray, hit, found);
+  return result.verdict == RayVerdict::defect ? deviating(ray, hit, found, result) : result;
+}
+
+/// What the facets do not explain, where the truth finds hits off them: that they lie off what they stand for. A ray
+/// that is moved by as much must then find what the fast tracer found.
+RayComparison RayJudge::deviating(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found,
+                                  const RayComparison& otherwise) const {
+  const Vec3d origin(ray.origin), direction(ray.direction);
+  const bool hits = hit.geometry != kNoGeometry;
+  SurfaceDeviation of_hit, of_found;
+  Vec3d normal(0);
+  if (hits) {
+    of_hit = surface_deviation(truth_shapes_, tolerance_, id_of(hit), kNoFace, origin + direction * hit.distance);
+    normal = Vec3d(surface_at(shapes_, ray.origin, ray.direction, hit, false).geometric_normal);
+  }
+  if (found.hit())
+    of_found =
+        surface_deviation(truth_shapes_, tolerance_, id_of(found), found.face, origin + direction * found.distance);
+  const double off = std::max(of_hit.distance, of_found.distance);
+  if (!(off > 0)) return otherwise;
+  RayComparison excused = otherwise;
+  excused.verdict = of_hit.curved || of_found.curved ? RayVerdict::tessellation : RayVerdict::nonplanar;
+  excused.edge_error = off;
+  // Along the ray what lies off by so much is met earlier or later by that over the cosine.
+  const auto is_alike = [&](const ReferenceHit& other) {
+    if (!hits || !other.hit()) return hits == other.hit();
+    if (other.geometry != hit.geometry || other.instance != hit.instance) return false;
+    const double cosine = std::min(std::abs(normal.dot(direction)), std::abs(other.normal.dot(direction)));
+    return std::abs(other.distance - hit.distance) * cosine <= 2 * off + otherwise.distance_error * cosine;
+  };
+  if (is_alike(found)) return excused;
+  const Vec3d u = (std::abs(direction.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)).cross(direction).normalized();
+  const Vec3d v = direction.cross(u), diagonal = (u + v) * std::sqrt(0.5), other_diagonal = (u - v) * std::sqrt(0.5);
+  for (const double share : {0.0625, 0.125, 0.25, 0.5, 1.0})
+    for (const Vec3d& way : {u, -u, v, -v, diagonal, -diagonal, other_diagonal, -other_diagonal, found.normal,
+                             -found.normal, normal, -normal})
+      if (is_alike(truth_.nearest(origin + way * (off * share), direction, ray.max_distance))) return excused;
+  return otherwise;
+}
+
+RayComparison RayJudge::nearest_on_facets(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found) const {
   const bool hits = hit.geometry != kNoGeometry;
   if (!hits && !found.hit()) return {};
   if (!hits) return missed(ray, found, ray.max_distance, 0);
   const SurfaceBounds bounds = surface_bounds(shapes_, ray.origin, ray.direction, id_of(hit), hit.distance);
+  // A truth that knows what triangles stand for names one by the surface's parameters: any of the mesh will do.
+  if (found.face != kNoFace && found.geometry == hit.geometry && found.instance == hit.instance && !bounds.grazing &&
+      id_of(hit) != id_of(found) && std::abs(hit.distance - found.distance) <= bounds.distance_error)
+    return {RayVerdict::agree,     std::abs(hit.distance - found.distance) / ulp(hit.distance),
+            bounds.edge_distance,  bounds.edge_error,
+            bounds.distance_error, bounds.position_error};
   if (found.hit() && id_of(hit) == id_of(found)) {
     const double off = std::abs(hit.distance - found.distance);
+    const SurfaceDeviation deviation =
+        found.face == kNoFace ? SurfaceDeviation()
+                              : surface_deviation(truth_shapes_, tolerance_, id_of(found), found.face,
+                                                  Vec3d(ray.origin) + Vec3d(ray.direction) * found.distance);
     const Vec3f normal = surface_at(shapes_, ray.origin, ray.direction, hit, false).geometric_normal;
     if (!bounds.grazing && off <= bounds.distance_error &&
-        (Vec3d(normal) - found.normal).length() <= bounds.normal_error)
-      return {RayVerdict::agree, off / ulp(hit.distance), bounds.edge_distance, bounds.edge_error,
-              bounds.distance_error};
+        (deviation.distance > 0 || (Vec3d(normal) - found.normal).length() <= bounds.normal_error))
+      return {RayVerdict::agree, off / ulp(hit.distance), bounds.edge_distance,
+              bounds.edge_error, bounds.distance_error,   bounds.position_error};
     const SurfaceBounds own = surface_bounds(truth_shapes_, ray.origin, ray.direction, id_of(found), found.distance);
     const RayVerdict verdict = excuse(own);
     return comparison(verdict == RayVerdict::agree ? RayVerdict::defect : verdict, own);
@@ -103,7 +155,10 @@ RayComparison RayJudge::nearest(const ComparedRay& ray, const Hit& hit, const Re
 
 RayComparison RayJudge::occlusion(const ComparedRay& ray, bool occluded, const ReferenceHit& found) const {
   if (occluded == found.hit()) return {};
-  if (!occluded) return missed(ray, found, ray.max_distance, 0);
+  if (!occluded) {
+    const RayComparison result = missed(ray, found, ray.max_distance, 0);
+    return result.verdict == RayVerdict::defect ? deviating(ray, Hit(), found, result) : result;
+  }
   // What was in the way is not said: the ray is asked again, alone.
   const Hit hit = ask_tracer(ray);
   if (hit.geometry != kNoGeometry) return nearest(ray, hit, found);

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "benchmarks/surface_bounds.h"
+#include "benchmarks/surface_deviation.h"
 #include "geometry/ray_intersector.h"
 #include "geometry/reference_tracer.h"
 
@@ -38,6 +39,7 @@ struct RayComparison {
   double edge_distance = 0;  ///< of what excuses the disagreement; see SurfaceBounds
   double edge_error = 0;
   double distance_error = 0;
+  double position_error = 0;
 };
 
 /// What the two tracers are told of: `shapes` and `truth_shapes` are the same unless a test makes them differ.
@@ -45,8 +47,8 @@ class RayJudge {
  public:
   /// All must outlive it.
   RayJudge(const ShapeSet& shapes, const RayIntersector& tracer, const ShapeSet& truth_shapes,
-           const ReferenceTracer& truth)
-      : shapes_(shapes), tracer_(tracer), truth_shapes_(truth_shapes), truth_(truth) {}
+           const ReferenceTracer& truth, const FacetTolerance& tolerance = {})
+      : shapes_(shapes), tracer_(tracer), truth_shapes_(truth_shapes), truth_(truth), tolerance_(tolerance) {}
 
   /// Compares nearest hits. `found`: the truth's.
   RayComparison nearest(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found) const;
@@ -58,6 +60,9 @@ class RayJudge {
   Hit ask_tracer(const ComparedRay& ray) const;
 
  private:
+  RayComparison nearest_on_facets(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found) const;
+  RayComparison deviating(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found,
+                          const RayComparison& otherwise) const;
   RayComparison missed(const ComparedRay& ray, const ReferenceHit& found, double end, double end_error) const;
   RayComparison extra(const ComparedRay& ray, const SurfaceBounds& bounds, const ReferenceHit& found) const;
   bool is_near_outline(const ComparedRay& ray) const;
@@ -66,6 +71,7 @@ class RayJudge {
   const RayIntersector& tracer_;
   const ShapeSet& truth_shapes_;
   const ReferenceTracer& truth_;
+  FacetTolerance tolerance_;
 };
 
 }  // namespace raytree::benchmarks

@@ -120,6 +120,10 @@ SurfaceBounds triangle_bounds(const Question& question, const TriangleMesh& mesh
       bounds.edge_error = edge_error[i] * to_distance;
     }
   }
+  // u = U / (U + V + W), likewise v: off by both parts' errors, and rounded.
+  const double longest = std::max({(v[1] - v[0]).length(), (v[2] - v[1]).length(), (v[0] - v[2]).length()});
+  bounds.position_error =
+      (2 * (edge_error[0] + edge_error[1] + edge_error[2]) / std::abs(sum) + gamma(8)) * longest * question.ray.scale();
   bool has_positive = false, has_negative = false;
   for (int i = 0; i < 3; ++i) {
     has_positive |= is_certain[i] && edge[i] > 0;

@@ -134,7 +134,10 @@ void TreeTracer::intersect(const RayBatch& rays, Coherence coherence, HitBatch& 
     if (const TreeRay* ray = like(*log, rays, i, false, follows_shadow)) {
       overwrite(rays, i, ray->ray);
       const bool agreed = ray->comparison.verdict == RayVerdict::agree;
-      hits.set(i, agreed ? rounded_hit(ray->found, ray->ray.max_distance) : ray->hit);
+      Hit hit = agreed ? rounded_hit(ray->found, ray->ray.max_distance) : ray->hit;
+      // Weights that go by a surface's parameters lie elsewhere on the facet: its own, at the true distance.
+      if (agreed && ray->found.face != kNoFace) hit = ray->hit, hit.distance = static_cast<float>(ray->found.distance);
+      hits.set(i, hit);
     } else {
       ++log->diverged;
       const ComparedRay own = ray_of(rays, i, false);

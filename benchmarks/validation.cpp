@@ -94,7 +94,7 @@ class Validation {
     for (const TreeRay& ray : worker.log.rays) take_worst(ray);
     for (TreeRay& ray : worker.log.rays) {
       if (verdicts[ray.sample] == RayVerdict::agree && difference(worker.radiance, ray.sample) > kMostPixelDifference &&
-          is_at_color_edge(ray)) {
+          reads_differently(ray)) {
         ray.comparison.verdict = RayVerdict::edge;
         take_worst(ray);
       }
@@ -112,17 +112,21 @@ class Validation {
     return std::isnan(most) ? std::numeric_limits<double>::infinity() : most;
   }
 
-  /// Whether the two hits on one surface, as close as the bounds have them, lie on different sides of an edge in the
-  /// surface's pattern. Eye rays see patterns filtered, without edges.
-  bool is_at_color_edge(const TreeRay& ray) const {
-    if (ray.ray.occlusion || ray.follows_shadow || ray.kind == RayKind::primary || ray.hit.geometry == kNoGeometry)
-      return false;
+  /// Whether the two hits on one surface, as close as the bounds have them, read different things there: on either side
+  /// of an edge in the surface's pattern, or on a facet so small beside its distance that its normals change over the
+  /// bound. Eye rays see patterns filtered, without edges.
+  bool reads_differently(const TreeRay& ray) const {
+    if (ray.ray.occlusion || ray.follows_shadow || ray.hit.geometry == kNoGeometry) return false;
     const Material& material = scene_.materials[scene_.material_at(ray.hit)];
     const Hit truth = rounded_hit(ray.found, ray.ray.max_distance);
     const SurfacePoint a = surface_at(*scene_.shapes, ray.ray.origin, ray.ray.direction, ray.hit, true),
                        b = surface_at(*scene_.shapes, ray.ray.origin, ray.ray.direction, truth, true);
+    const RayComparison& bounds = ray.comparison;
     const double apart = (Vec3d(a.position) - Vec3d(b.position)).length();
-    if (!(apart <= ray.comparison.edge_error + ray.comparison.distance_error + a.clearance + b.clearance)) return false;
+    if (!(apart <= bounds.position_error + bounds.edge_error + bounds.distance_error + a.clearance + b.clearance))
+      return false;
+    if ((a.shading_normal - b.shading_normal).length() > kMostPixelDifference) return true;
+    if (ray.kind == RayKind::primary) return false;
     const Rgb off = material.diffuse.at(a, Footprint()) - material.diffuse.at(b, Footprint());
     return std::max({std::abs(off.r), std::abs(off.g), std::abs(off.b)}) > kMostPixelDifference;
   }
@@ -242,7 +246,7 @@ ValidationReport validate(Scene& scene, const ShapeSet& truth_shapes, const Refe
 
   const RayIntersector& tracer = *scene.intersector;
   const LentTracer lent(scene, std::make_unique<TreeTracer>(*scene.shapes, tracer, truth));
-  const RayJudge judge(*scene.shapes, tracer, truth_shapes, truth);
+  const RayJudge judge(*scene.shapes, tracer, truth_shapes, truth, options.tolerance);
   Validation validation(scene, judge, options, report);
   const int columns = (report.width + kTileSize - 1) / kTileSize, rows = (report.height + kTileSize - 1) / kTileSize;
   std::vector<TileReport> tiles(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));

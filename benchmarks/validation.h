@@ -18,6 +18,7 @@ namespace raytree::benchmarks {
 
 struct ValidationOptions {
   std::uint64_t pixels = 0;  ///< whose trees are compared, picked by a hash of their place; 0: all
+  FacetTolerance tolerance;  ///< where the truth is not the fast tracer's triangles
   const std::atomic<bool>* stop = nullptr;
   std::function<void(std::uint64_t done, std::uint64_t total)> on_tile;  ///< from any thread, one at a time
 };

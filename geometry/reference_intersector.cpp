@@ -13,14 +13,14 @@ bool is_traceable(const RayBatch& rays, std::size_t i) {
 
 }  // namespace
 
-void ReferenceIntersector::intersect(const RayBatch& rays, Coherence, HitBatch& hits) const noexcept {
+void intersect_one_by_one(const ReferenceTracer& tracer, const RayBatch& rays, HitBatch& hits) noexcept {
   hits.begin_instances();
   for (std::size_t i = 0; i < rays.size; ++i) {
     Hit hit;
     hit.distance = rays.max_distance[i];
     if (is_traceable(rays, i)) {
       const double most = double(rays.max_distance[i]);
-      const ReferenceHit found = tracer_->nearest(Vec3d(rays.origin(i)), Vec3d(rays.direction(i)), most);
+      const ReferenceHit found = tracer.nearest(Vec3d(rays.origin(i)), Vec3d(rays.direction(i)), most);
       if (found.hit())
         hit = {found.geometry,
                found.primitive,
@@ -33,9 +33,9 @@ void ReferenceIntersector::intersect(const RayBatch& rays, Coherence, HitBatch& 
   }
 }
 
-void ReferenceIntersector::occluded(const RayBatch& rays, Coherence, std::uint8_t* occluded) const noexcept {
+void occluded_one_by_one(const ReferenceTracer& tracer, const RayBatch& rays, std::uint8_t* occluded) noexcept {
   for (std::size_t i = 0; i < rays.size; ++i)
-    occluded[i] = is_traceable(rays, i) && tracer_->is_occluded(Vec3d(rays.origin(i)), Vec3d(rays.direction(i)),
+    occluded[i] = is_traceable(rays, i) && tracer.is_occluded(Vec3d(rays.origin(i)), Vec3d(rays.direction(i)),
                                                                 double(rays.max_distance[i]));
 }
 

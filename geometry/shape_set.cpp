@@ -1,6 +1,7 @@
 #include "geometry/shape_set.h"
 
 #include "geometry/facet_record.h"
+#include "geometry/mesh_source.h"
 
 namespace raytree {
 
@@ -21,6 +22,7 @@ std::size_t bounded_bytes(const BoundedShapes& shapes) {
            bytes(mesh.texture_coordinates) + bytes(mesh.texture_corners) + bytes(mesh.triangle_faces) +
            bytes(entry.triangle_tags);
     if (entry.facets) sum += entry.facets->memory_bytes();
+    if (entry.source) sum += entry.source->memory_bytes();
   }
   return sum;
 }

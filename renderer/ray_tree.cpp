@@ -9,6 +9,7 @@
 #include <span>
 
 #include "geometry/surface_batch.h"
+#include "geometry/true_surfaces.h"
 #include "renderer/facet_shading.h"
 #include "renderer/features.h"
 #include "renderer/media.h"
@@ -282,6 +283,8 @@ void SampleTracer::State::find_hits() {
   if (point_count < rays.size) add_background();
   prefetch_triangles(*scene.shapes);
   find_surfaces(*scene.shapes, rays, hits, wants_texture, shading.surfaces);
+  if (scene.sphere_pixels > 0)
+    move_to_true_surfaces(*scene.shapes, scene.sphere_pixels, rays, hits, shading.surfaces);
   if (shades_facets()) add_facets();
   shading.turn_to_rays(rays);
 }

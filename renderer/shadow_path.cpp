@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/surface.h"
+#include "renderer/hit_surface.h"
 
 namespace raytree {
 namespace {
@@ -33,7 +33,7 @@ bool follow_shadow(const Scene& scene, MediaTable* media, const Hit& hit, Shadow
     path.transmittance = Rgb();
     return false;
   }
-  const SurfacePoint point = surface_at(*scene.shapes, path.origin, path.direction, hit, false);
+  const SurfacePoint point = hit_surface(scene, path.origin, path.direction, hit);
   const bool leaving = path.direction.dot(point.geometric_normal) > 0;
   const bool counts = !is_same_crossing(path, hit, leaving, point);
   if (media != nullptr) {

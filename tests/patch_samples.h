@@ -13,14 +13,11 @@
 #include "geometry/bezier_patch.h"
 #include "geometry/coons_patch.h"
 #include "geometry/surface_of_revolution.h"
+#include "tests/angles.h"
 
 namespace raytree::test {
 
 inline constexpr double kUlp = 0x1p-52;  ///< of numbers from 1 to 2
-
-inline double degrees_between(const Vec3d& a, const Vec3d& b) {
-  return std::atan2(a.cross(b).length(), a.dot(b)) * 180 / std::numbers::pi;
-}
 
 /// Profile of the unit circle from the south pole to the north pole, or of its part on one side of the equator.
 inline std::vector<BezierCurve> half_circle() {

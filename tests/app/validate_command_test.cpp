@@ -48,11 +48,20 @@ TEST(ValidateCommand, TablesTakeSeveralScenes) {
   EXPECT_TRUE(contains(result.out, "\n| glass | "));
 }
 
+TEST(ValidateCommand, ComparesWithWhitteds1980TracerToo) {
+  const ProgramResult result =
+      run_program({"validate", "spheres-1980", "--truth", "spheres", "--size", "64x48", "--full"});
+  EXPECT_EQ(result.status, 0) << result.out << result.err;
+  EXPECT_TRUE(contains(result.out, "no defect"));
+}
+
 TEST(ValidateCommand, WrongInputIsNamed) {
   expect_bad_input({"validate", "glass", "--rays", "0"}, {"--rays"});
   expect_bad_input({"validate", "glass", "--rays", "9", "--full"}, {"--full", "--rays"});
   expect_bad_input({"validate", "glass", "rough"}, {"rough", "--table"});
   expect_bad_input({"validate", "glass", "-o", "a.exr"}, {"a.exr", ".png"});
+  expect_bad_input({"validate", "glass", "--truth", "sphere"}, {"sphere", "did you mean spheres?"});
+  expect_bad_input({"validate", "teapot", "--truth", "spheres", "--rate", "4"}, {"--truth spheres", "rate"});
   expect_bad_input({"ray", "glass", "0,0,0"}, {"two vectors"});
   expect_bad_input({"ray", "glass", "0,0,0", "0,0,0"}, {"direction"});
   expect_bad_input({"ray", "glass", "0,0,0", "0,0,1", "--end", "-1"}, {"--end"});

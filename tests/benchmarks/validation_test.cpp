@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 
+#include "geometry/sphere_bounded_intersector.h"
 #include "geometry/surface.h"
 #include "geometry/triangle_reference.h"
 #include "renderer/builtin_scenes.h"
@@ -240,6 +241,46 @@ TEST(Validation, SamplesArePickedByTheirPlace) {
   const Image image = marked_image(report, planes);
   EXPECT_EQ(image.planes.size(), 3u);
   EXPECT_EQ(planes[0].size(), 64u * 64u);
+}
+
+/// Against the tracer that knows what triangles stand for.
+ValidationReport validated_by_spheres(SceneDescription description, FaultyTracer::Fault fault = {}) {
+  PrepareOptions prepare;
+  prepare.keep_sources = true;
+  Scene scene = test::prepared(std::move(description), nullptr, prepare);
+  const SphereBoundedIntersector truth(*scene.shapes, SphereBoundedOptions());
+  if (fault) scene.intersector = std::make_unique<FaultyTracer>(std::move(scene.intersector), std::move(fault));
+  ValidationOptions options;
+  options.tolerance = {scene.description.render.tessellation.tolerance, kDefaultSpherePixels};
+  return validate(scene, *scene.shapes, truth, options);
+}
+
+TEST(Validation, FacetsOfALimitSurfaceAreTessellation) {
+  const SceneDescription scene = unsampled(builtin_scene("teapot"), 64, 48);
+  const ValidationReport report = validated_by_spheres(scene);
+  // What is left are rays that leave facets under creases of the limit surface and meet it again further on.
+  EXPECT_LT(report.count(RayVerdict::defect), report.all().rays / 1000) << report_text(report);
+  EXPECT_GT(report.count(RayVerdict::tessellation), 500u);
+  // The tolerance excuses no hole.
+  const ValidationReport faulty = validated_by_spheres(
+      scene, [](const RayIntersector& tracer, const Vec3f& origin, const Vec3f& direction, float end, const Hit& hit) {
+        if (hit.geometry < kFirstMeshGeometry || hit.primitive % 16 != 0) return hit;
+        return FaultyTracer::behind(tracer, origin, direction, end, hit.distance * 1.001f);
+      });
+  EXPECT_GT(faulty.count(RayVerdict::defect), 5 * report.count(RayVerdict::defect) + 50);
+}
+
+TEST(Validation, PolygonsThatAreNotFlatAreNonplanar) {
+  SceneDescription description = globes();
+  auto mesh = std::make_shared<PolygonMesh>();
+  for (const Vec3f& p : {Vec3f(-2, -1, 1.5f), Vec3f(2, -1, 1.8f), Vec3f(2, 1, 1.5f), Vec3f(-2, 1, 1.8f)})
+    mesh->positions.push_back(p);
+  for (const std::uint32_t i : {0u, 1u, 2u, 3u}) mesh->corners.push_back(i);
+  mesh->face_sizes.push_back(4);
+  description.shapes.push_back(test::mesh_shape(mesh, "gray", NormalSource::flat, "e"));
+  const ValidationReport report = validated_by_spheres(std::move(description));
+  EXPECT_EQ(report.count(RayVerdict::defect), 0u) << report_text(report);
+  EXPECT_GT(report.count(RayVerdict::nonplanar), 100u);
 }
 
 TEST(Validation, RaysAimedAtVerticesAreExcusedAsEdges) {

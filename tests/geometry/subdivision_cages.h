@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/polygon_mesh.h"
+#include "tests/angles.h"
 
 namespace raytree::test {
 
@@ -104,11 +105,6 @@ inline ClosedFormLimit catmark_limit(const Vec3d& v, const std::vector<Vec3d>& e
     t2 += edges[i] * (a * std::sin(turn * k)) + faces[i] * (std::sin(turn * k) + std::sin(turn * (k + 1)));
   }
   return {sum / (n * (n + 5)), t1.cross(t2).normalized()};
-}
-
-/// Degrees between two unit vectors.
-inline double degrees_between(const Vec3d& a, const Vec3d& b) {
-  return std::atan2(a.cross(b).length(), a.dot(b)) * 180 / std::numbers::pi;
 }
 
 }  // namespace raytree::test
