@@ -13,5 +13,7 @@ int schema_command(const Words& words);
 int ocio_command(const Words& words);
 int bench_command(const Words& words);
 int convert_command(const Words& words);
+int validate_command(const Words& words);
+int ray_command(const Words& words);
 
 }  // namespace raytree::app

@@ -8,7 +8,7 @@
 
 namespace raytree::app {
 
-int with_prepared_scene(const SceneRun& run, const std::function<void(const Scene&, const Interruption&)>& use) {
+int with_prepared_scene(const SceneRun& run, const std::function<void(Scene&, const Interruption&)>& use) {
   const Interruption interruption(nullptr);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(run.threads));
   tbb::task_arena arena(run.threads);
@@ -21,10 +21,10 @@ int with_prepared_scene(const SceneRun& run, const std::function<void(const Scen
       options.threads = run.threads;
       options.stop = &interruption.stop();
       options.build = run.build;
-      options.hierarchy = run.scene.hierarchy;
-      options.memory_allowed = parse_memory(run.scene.memory);
+      apply_tracer_flags(run.scene, options);
       options.measure_tessellation = run.measure_tessellation;
-      const Scene scene = prepare(std::move(description), options, warnings);
+      options.keep_sources = run.keep_sources;
+      Scene scene = prepare(std::move(description), options, warnings);
       if (!run.quiet) print_warnings(warnings, true);
       use(scene, interruption);
     });

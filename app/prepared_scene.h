@@ -15,10 +15,11 @@ struct SceneRun {
   bool build = true;   ///< with its tracer
   bool quiet = false;  ///< no warnings
   bool measure_tessellation = false;
+  bool keep_sources = false;  ///< see PrepareOptions
 };
 
 /// Loads and prepares the scene and hands it to `use`, all on that many threads. Returns the exit status: success, or
 /// the one that says which signal came, whose consequences are then not reported as errors. Throws Error.
-int with_prepared_scene(const SceneRun& run, const std::function<void(const Scene&, const Interruption&)>& use);
+int with_prepared_scene(const SceneRun& run, const std::function<void(Scene&, const Interruption&)>& use);
 
 }  // namespace raytree::app

@@ -68,8 +68,7 @@ class RenderRun {
     prepare_options.camera = options_.scene.camera;
     prepare_options.threads = options_.threads;
     prepare_options.stop = &interruption_.stop();
-    prepare_options.hierarchy = options_.scene.hierarchy;
-    prepare_options.memory_allowed = parse_memory(options_.scene.memory);
+    apply_tracer_flags(options_.scene, prepare_options);
     prepare_options.on_phase = [this](const std::string& text) { progress_.phase(text); };
     Scene scene = prepare(std::move(description), prepare_options, report_.warnings);
     check_interruption();

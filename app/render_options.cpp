@@ -57,6 +57,7 @@ void add_flags(CLI::App& command, RenderFlags& flags) {
   add_scene_flags(command, flags.scene, true);
   add_shading_flag(command, flags.scene);
   add_hierarchy_flags(command, flags.scene);
+  add_intersector_flags(command, flags.scene);
   command.add_option("--crop", flags.crop, "Render this window of the image alone")
       ->type_name("WxH+X+Y")
       ->group("Scene");
@@ -264,6 +265,15 @@ std::optional<RenderCommandOptions> parse_render_options(const Words& words) {
   const auto without_effect = [&](bool given, const char* flag, const char* why) {
     if (given) options.warnings.push_back({{}, fmt::format("{} has no effect: {}", flag, why), 1});
   };
+  if (options.scene.intersector == "spheres") {
+    const char* const why = "bounding spheres are searched by --sphere-search";
+    without_effect(!options.scene.hierarchy.empty(), "--hierarchy", why);
+    without_effect(!options.scene.memory.empty(), "--memory", why);
+  } else {
+    const char* const why = "it is for --intersector spheres";
+    without_effect(!options.scene.sphere_size.empty(), "--sphere-size", why);
+    without_effect(!options.scene.sphere_search.empty(), "--sphere-search", why);
+  }
   if (!options.writes_display_referred()) {
     const char* const why = "EXR is scene-linear, and no display-referred file is written";
     without_effect(!flags.exposure.empty(), "--exposure", why);

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <string_view>
 
 #include "app/suggestion.h"
 #include "geometry/facet_pattern.h"
@@ -19,7 +18,6 @@
 #include "renderer/nff_reader.h"
 #include "renderer/scene_fields.h"
 #include "renderer/scene_reader.h"
-#include "renderer/tracer_choice.h"
 
 namespace raytree::app {
 namespace {
@@ -225,28 +223,6 @@ void add_shading_flag(CLI::App& command, SceneFlags& flags) {
       ->group("Scene");
 }
 
-void add_hierarchy_flags(CLI::App& command, SceneFlags& flags) {
-  command
-      .add_option("--hierarchy", flags.hierarchy,
-                  "What the tracer builds: balanced, quick or compact; default: by the rays expected")
-      ->type_name("KIND")
-      ->group("Tracing");
-  command.add_option("--memory", flags.memory, "Memory allowed for shapes and hierarchy, e.g. 800M or 4G")
-      ->type_name("SIZE")
-      ->group("Tracing");
-}
-
-std::uint64_t parse_memory(const std::string& text) {
-  if (text.empty()) return 0;
-  constexpr std::string_view kUnits = "KMGT";
-  const std::size_t unit = kUnits.find(static_cast<char>(std::toupper(static_cast<unsigned char>(text.back()))));
-  const double number = parse_real("--memory", unit == std::string_view::npos ? text : text.substr(0, text.size() - 1));
-  const double bytes = number * std::pow(1024.0, unit == std::string_view::npos ? 0.0 : double(unit) + 1);
-  if (!(bytes >= 1) || !(bytes < 0x1p62))
-    throw usage_error(fmt::format("--memory: \"{}\" is not a size, for example 800M or 4G", text));
-  return static_cast<std::uint64_t>(bytes);
-}
-
 void check_scene_flags(const SceneFlags& flags) {
   if (flags.scene.empty())
     throw usage_error(
@@ -254,8 +230,8 @@ void check_scene_flags(const SceneFlags& flags) {
         joined(builtin_names()));
   if (!flags.size.empty()) parse_size("--size", flags.size);
   for (const std::string& text : flags.sets) parse_assignment(text);
-  if (!flags.hierarchy.empty()) hierarchy_named(flags.hierarchy);
-  parse_memory(flags.memory);
+  PrepareOptions tracer;
+  apply_tracer_flags(flags, tracer);
   if (!flags.tolerance.empty() && !(parse_real("--tolerance", flags.tolerance) > 0))
     throw usage_error(fmt::format("--tolerance: {} is not larger than 0", flags.tolerance));
   if (!flags.rate.empty()) parse_integer("--rate", flags.rate, 1, kLargestRate);

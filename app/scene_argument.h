@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/usage.h"
+#include "renderer/scene.h"
 #include "renderer/scene_description.h"
 
 namespace CLI {
@@ -26,6 +27,7 @@ struct SceneFlags {
   std::string shading, terminator, reflections;
   bool classic = false;
   std::string hierarchy, memory;
+  std::string intersector, sphere_size, sphere_search;
 };
 
 /// Adds --size, --camera, --set, --tolerance and --rate; with `tracing` also what else changes the
@@ -37,6 +39,12 @@ void add_shading_flag(CLI::App& command, SceneFlags& flags);
 
 /// Adds --hierarchy and --memory, for commands that trace.
 void add_hierarchy_flags(CLI::App& command, SceneFlags& flags);
+
+/// Adds --intersector, --sphere-size and --sphere-search.
+void add_intersector_flags(CLI::App& command, SceneFlags& flags);
+
+/// What the flags say of the tracer and what it builds. Throws Error (bad_input).
+void apply_tracer_flags(const SceneFlags& flags, PrepareOptions& options);
 
 /// Bytes: a number, or one with K, M, G or T (powers of 1024) behind it; 0 for none given.
 std::uint64_t parse_memory(const std::string& text);

@@ -77,4 +77,23 @@ BezierCurve side_curve(const CoonsPatch& patch, int side) {
 
 CoonsPatch transposed(const CoonsPatch& patch) { return {patch.left, patch.right, patch.bottom, patch.top}; }
 
+std::optional<BezierPatch> as_bezier_patch(const CoonsPatch& patch) {
+  for (const BezierCurve* curve : {&patch.bottom, &patch.top, &patch.left, &patch.right})
+    for (const double weight : curve->weights)
+      if (weight != patch.bottom.weights[0]) return std::nullopt;
+  BezierPatch result;
+  const Vec3d &a = patch.bottom.points[0], &b = patch.bottom.points[3], &c = patch.top.points[0],
+              &d = patch.top.points[3];
+  for (std::size_t j = 0; j < 4; ++j)
+    for (std::size_t i = 0; i < 4; ++i) {
+      // The parameter itself is the cubic with control values 0, 1/3, 2/3, 1.
+      const double u = double(i) / 3, v = double(j) / 3;
+      const Vec3d across_v = patch.bottom.points[i] * (1 - v) + patch.top.points[i] * v;
+      const Vec3d across_u = patch.left.points[j] * (1 - u) + patch.right.points[j] * u;
+      const Vec3d corners = (a * (1 - u) + b * u) * (1 - v) + (c * (1 - u) + d * u) * v;
+      result.points[4 * j + i] = across_v + across_u - corners;
+    }
+  return result;
+}
+
 }  // namespace raytree

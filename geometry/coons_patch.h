@@ -2,8 +2,9 @@
 // in double. The ruled surfaces over both pairs of opposite curves, added, less the bilinear patch of the corners.
 #pragma once
 
-#include "geometry/bezier_curve.h"
-#include "geometry/patch_normal.h"
+#include <optional>
+
+#include "geometry/bezier_patch.h"
 
 namespace raytree {
 
@@ -29,5 +30,8 @@ double derivative_scale(const CoonsPatch& patch);
 BezierCurve side_curve(const CoonsPatch& patch, int side);
 
 CoonsPatch transposed(const CoonsPatch& patch);
+
+/// The same surface as a Bezier patch, which it is where all weights of all curves are equal.
+std::optional<BezierPatch> as_bezier_patch(const CoonsPatch& patch);
 
 }  // namespace raytree

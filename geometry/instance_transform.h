@@ -2,6 +2,7 @@
 // single-precision matrix puts them, exactly: everything here reckons from that matrix in double.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/shape_set.h"
@@ -38,10 +39,26 @@ class InstanceTransform {
 
   Vec3d point(const Vec3d& p) const { return x_ * p.x + y_ * p.y + z_ * p.z + origin_; }
   Vec3d vector(const Vec3d& v) const { return x_ * v.x + y_ * v.y + z_ * v.z; }
+  /// The ways back, from scene to group space.
+  Vec3d inverse_vector(const Vec3d& v) const {
+    return Vec3d(minor_[0].dot(v), minor_[1].dot(v), minor_[2].dot(v)) * (1 / determinant_);
+  }
+  Vec3d inverse_point(const Vec3d& p) const { return inverse_vector(p - origin_); }
   /// Of any length: normals go by the inverse transpose, which the minors are but for the determinant. A mirroring
   /// transform turns triangles over and their normals with them, so the outside stays outside.
   Vec3d normal(const Vec3d& n) const {
     return (minor_[0] * n.x + minor_[1] * n.y + minor_[2] * n.z) * (1 / determinant_);
+  }
+  /// The way from scene space into the group, in double.
+  Vec3d vector_inside(const Vec3d& v) const {
+    return Vec3d(v.dot(minor_[0]), v.dot(minor_[1]), v.dot(minor_[2])) * (1 / determinant_);
+  }
+  Vec3d point_inside(const Vec3d& p) const { return vector_inside(p - origin_); }
+  /// Bound on the factor by which lengths grow on the way to scene space, met where the axes are at right angles: the
+  /// square root of the largest sum of a row of |M M^T| (Gershgorin).
+  double stretch() const {
+    const double xy = std::abs(x_.dot(y_)), yz = std::abs(y_.dot(z_)), zx = std::abs(z_.dot(x_));
+    return std::sqrt(std::max({x_.dot(x_) + xy + zx, y_.dot(y_) + xy + yz, z_.dot(z_) + yz + zx}));
   }
   /// Factor of a transform that scales all directions alike.
   double scale() const { return std::cbrt(std::abs(determinant_)); }

@@ -331,6 +331,20 @@ void PatchSurface::evaluate(std::size_t face, std::span<const Vec2f> parameters,
       patches_[face]);
 }
 
+std::vector<LimitPatch> PatchSurface::limit_patches() const {
+  std::vector<LimitPatch> result(patches_.size());
+  for (std::size_t face = 0; face < patches_.size(); ++face) {
+    result[face].face = static_cast<std::uint32_t>(face);
+    if (const auto* bezier = std::get_if<BezierPatch>(&patches_[face]))
+      result[face].patch = *bezier;
+    else if (const std::optional<BezierPatch> same = as_bezier_patch(std::get<CoonsPatch>(patches_[face])))
+      result[face].patch = *same;
+    else
+      return {};
+  }
+  return result;
+}
+
 void PatchSurface::evaluate_texture(std::size_t, std::span<const Vec2f> parameters,
                                     std::span<Vec2f> coordinates) const {
   for (std::size_t i = 0; i < parameters.size(); ++i)

@@ -9,6 +9,7 @@
 #include "geometry/bezier_patch.h"
 #include "geometry/coons_patch.h"
 #include "geometry/error.h"
+#include "geometry/limit_patch.h"
 #include "geometry/parametric_surface.h"
 
 namespace raytree {
@@ -50,6 +51,10 @@ class PatchSurface final : public ParametricSurface {
   void evaluate_texture(std::size_t face, std::span<const Vec2f> parameters,
                         std::span<Vec2f> coordinates) const override;
   std::uint32_t source_face(std::size_t face) const override { return static_cast<std::uint32_t>(face); }
+
+  /// Each face as one Bezier patch, relative to origin(). Empty where some face is none: a Coons patch over rational
+  /// curves.
+  std::vector<LimitPatch> limit_patches() const;
 
  private:
   void join_patches(const SourceLocation& where, Warnings& warnings);

@@ -41,6 +41,9 @@ class RayBatch {
   float *origin_x, *origin_y, *origin_z;
   float *direction_x, *direction_y, *direction_z;
   float* max_distance;
+  /// [size] Which of the samples under way each ray is traced for; null: none. Tracers answer without it: it is for
+  /// those that keep account of rays.
+  const std::uint16_t* sample = nullptr;
 
   void set(std::size_t i, const Vec3f& origin, const Vec3f& direction, float end) {
     origin_x[i] = origin.x, origin_y[i] = origin.y, origin_z[i] = origin.z;

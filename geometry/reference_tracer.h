@@ -1,6 +1,7 @@
 // The truth that fast tracers are compared with: one ray at a time, in double, slowly and plainly.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -32,6 +33,15 @@ class ReferenceTracer {
 
   /// Nearest hit within [0, max_distance]. The direction need not be unit; distances are in its lengths.
   virtual ReferenceHit nearest(const Vec3d& origin, const Vec3d& direction, double max_distance) const = 0;
+
+  /// Whether there is any hit within [0, max_distance]: as nearest(), for tracers that find that sooner.
+  virtual bool is_occluded(const Vec3d& origin, const Vec3d& direction, double max_distance) const {
+    return nearest(origin, direction, max_distance).hit();
+  }
+
+  /// Bytes of the tracer's own structures, and of all that it held while it built them; 0: it has none.
+  virtual std::size_t memory_bytes() const noexcept { return 0; }
+  virtual std::size_t peak_memory_bytes() const noexcept { return memory_bytes(); }
 };
 
 }  // namespace raytree

@@ -2,6 +2,7 @@
 
 #include "geometry/buffer.h"
 #include "geometry/facet_record.h"
+#include "geometry/mesh_source.h"
 
 namespace raytree {
 
@@ -18,6 +19,7 @@ std::size_t bounded_bytes(const BoundedShapes& shapes) {
            array_bytes(mesh.normal_corners) + array_bytes(mesh.texture_coordinates) +
            array_bytes(mesh.texture_corners) + array_bytes(mesh.triangle_faces) + array_bytes(entry.triangle_tags);
     if (entry.facets) sum += entry.facets->memory_bytes();
+    if (entry.source) sum += entry.source->memory_bytes();
   }
   return sum;
 }

@@ -51,6 +51,7 @@ struct Plane {
 };
 
 struct FacetRecord;  // facet_record.h
+struct MeshSource;   // mesh_source.h
 
 inline constexpr std::uint32_t kNoTag = 0xffffffffu;
 
@@ -62,6 +63,8 @@ struct MeshEntry {
   Buffer<std::uint32_t> triangle_tags = {};
   /// What shading asks for beside the triangles; null: nothing.
   std::shared_ptr<const FacetRecord> facets = {};
+  /// What the triangles were made of; null: not kept.
+  std::shared_ptr<const MeshSource> source = {};
 };
 
 /// What lies within bounds.

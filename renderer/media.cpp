@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "geometry/surface.h"
+#include "renderer/hit_surface.h"
 
 namespace raytree {
 namespace {
@@ -97,7 +97,7 @@ std::vector<Solid> solids_around(const Scene& scene, const Vec3f& origin, const 
     scene.intersector->intersect(ray, Coherence::incoherent, hits);
     const Hit hit = hits[0];
     if (hit.geometry == kNoGeometry) break;
-    const SurfacePoint point = surface_at(shapes, from, direction, hit, false);
+    const SurfacePoint point = hit_surface(scene, from, direction, hit);
     const bool leaving = direction.dot(point.geometric_normal) > 0;
     from = offset_origin(point, leaving ? point.geometric_normal : -point.geometric_normal);
     const Solid solid = solid_at(scene, hit);

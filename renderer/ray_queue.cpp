@@ -27,6 +27,7 @@ void RayArrays::copy_to(RayBatch& rays) const {
   std::copy_n(direction_y, size, rays.direction_y);
   std::copy_n(direction_z, size, rays.direction_z);
   std::fill_n(rays.max_distance, size, std::numeric_limits<float>::infinity());
+  rays.sample = sample;
 }
 
 void RayQueue::reserve(std::size_t capacity) {

@@ -11,6 +11,7 @@
 #include "geometry/ray_batch.h"
 #include "geometry/stopwatch.h"
 #include "geometry/surface_batch.h"
+#include "geometry/true_surfaces.h"
 #include "renderer/facet_shading.h"
 #include "renderer/features.h"
 #include "renderer/media.h"
@@ -74,6 +75,7 @@ struct SampleTracer::State {
         shadow_light(kBatchSize),
         pending((4 + (tracks_paths() ? 2 * static_cast<std::size_t>(settings.rough_samples) : 0)) * kBatchSize),
         points(kBatchSize) {
+    shadow_rays.sample = shadow_samples.data();
     if (tracks_paths()) pending_paths.reserve(pending.capacity());
     passes_rays = tracks_media();
     for (const Material& material : scene.materials) {
@@ -157,7 +159,7 @@ struct SampleTracer::State {
   HitBatch hits;
   RayBatch shadow_rays;
   std::vector<std::uint8_t> occluded;
-  std::vector<std::uint32_t> shadow_samples;
+  std::vector<std::uint16_t> shadow_samples;
   std::vector<Rgb> shadow_light;  ///< what a shadow ray brings when nothing is in its way
 
   RayQueue pending;  ///< the newest rays are traced first
@@ -283,6 +285,8 @@ void SampleTracer::State::find_hits() {
   if (point_count < rays.size) add_background();
   prefetch_triangles(*scene.shapes);
   find_surfaces(*scene.shapes, rays, hits, wants_texture, shading.surfaces);
+  if (scene.sphere_pixels > 0)
+    move_to_true_surfaces(*scene.shapes, scene.sphere_pixels, rays, hits, shading.surfaces);
   if (shades_facets()) add_facets();
   shading.turn_to_rays(rays);
 }

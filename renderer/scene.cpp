@@ -279,6 +279,34 @@ std::string building_text(const SceneSummary& summary) {
   return text;
 }
 
+void build_embree(const PrepareOptions& options, Scene& scene) {
+  HierarchyDemand demand;
+  demand.primitives = primitive_count(scene.summary);
+  demand.rays = expected_rays(scene.description);
+  if (options.memory_allowed > 0)
+    demand.memory_allowed =
+        options.memory_allowed > scene.summary.array_bytes ? options.memory_allowed - scene.summary.array_bytes : 1;
+  const HierarchyChoice choice =
+      options.hierarchy.empty() ? choose_hierarchy(demand) : hierarchy_named(options.hierarchy);
+  scene.summary.hierarchy = choice.reason;
+  EmbreeOptions embree;
+  embree.quality = choice.chosen->quality;
+  embree.compact = choice.chosen->compact;
+  embree.threads = options.threads;
+  embree.stop = options.stop;
+  scene.intersector = std::make_unique<EmbreeIntersector>(*scene.shapes, embree);
+}
+
+void build_spheres(const PrepareOptions& options, Scene& scene) {
+  SphereBoundedOptions spheres = options.spheres;
+  spheres.stop = options.stop;
+  auto tracer = std::make_unique<SphereBoundedIntersector>(*scene.shapes, spheres);
+  scene.summary.hierarchy = fmt::format("bounding spheres about {} objects, {}", tracer->object_count(),
+                                        tracer->uses_hierarchy() ? "in a hierarchy" : "tried one after the other");
+  scene.sphere_pixels = spheres.sphere_pixels;
+  scene.intersector = std::move(tracer);
+}
+
 }  // namespace
 
 Scene::Scene() = default;
@@ -359,21 +387,10 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
 
   if (options.on_phase) options.on_phase(building_text(scene.summary));
   start = Clock::now();
-  HierarchyDemand demand;
-  demand.primitives = primitive_count(scene.summary);
-  demand.rays = expected_rays(scene.description);
-  if (options.memory_allowed > 0)
-    demand.memory_allowed =
-        options.memory_allowed > scene.summary.array_bytes ? options.memory_allowed - scene.summary.array_bytes : 1;
-  const HierarchyChoice choice =
-      options.hierarchy.empty() ? choose_hierarchy(demand) : hierarchy_named(options.hierarchy);
-  scene.summary.hierarchy = choice.reason;
-  EmbreeOptions embree;
-  embree.quality = choice.chosen->quality;
-  embree.compact = choice.chosen->compact;
-  embree.threads = options.threads;
-  embree.stop = options.stop;
-  scene.intersector = std::make_unique<EmbreeIntersector>(*scene.shapes, embree);
+  if (options.tracer == Tracer::spheres)
+    build_spheres(options, scene);
+  else
+    build_embree(options, scene);
   scene.summary.intersector_bytes = scene.intersector->memory_bytes();
   scene.seconds.build = seconds_since(start);
   return scene;

@@ -13,6 +13,7 @@
 #include "geometry/error.h"
 #include "geometry/ray_intersector.h"
 #include "geometry/shape_set.h"
+#include "geometry/sphere_bounded_intersector.h"
 #include "geometry/tessellation_error.h"
 #include "renderer/background.h"
 #include "renderer/camera.h"
@@ -73,6 +74,12 @@ struct SceneSummary {
   std::string hierarchy;                ///< what the tracer builds, and why
 };
 
+/// What traces the rays.
+enum class Tracer : std::uint8_t {
+  embree,
+  spheres  ///< the reference, sphere_bounded_intersector.h
+};
+
 struct PrepareOptions {
   std::string camera;                       ///< name; empty: the first one
   int threads = 0;                          ///< that the intersector may use; 0: all of the arena
@@ -81,6 +88,13 @@ struct PrepareOptions {
   std::string hierarchy;                    ///< see hierarchy_named(); empty: chosen by cost
   std::uint64_t memory_allowed = 0;         ///< bytes, of arrays and hierarchy together; 0: any
   bool measure_tessellation = false;        ///< compare every facet with its limit surface
+  Tracer tracer = Tracer::embree;
+  SphereBoundedOptions spheres;  ///< of Tracer::spheres, but for `stop`
+  /// Keep what meshes were made of (MeshEntry::source), for who builds a SphereBoundedIntersector over the scene's
+  /// shapes; Tracer::spheres does anyway.
+  bool keep_sources = false;
+
+  bool keeps_sources() const { return keep_sources || tracer == Tracer::spheres; }
   /// Told what begins, in a few words ("reading dragon.ply", "building over 871306 triangles"); from prepare()'s
   /// thread.
   std::function<void(const std::string&)> on_phase;
@@ -124,6 +138,8 @@ class Scene {
   bool tracks_media = false;         ///< overlapping media are told apart by priority, and some material sets one
   bool rough_surfaces = false;       ///< some material in use perturbs normals
   bool shades_facets = false;        ///< some mesh has a FacetRecord
+  /// Larger than 0: hits lie on what meshes were made of (true_surfaces.h), found to spheres of so many pixels.
+  double sphere_pixels = 0;
   SmallObjects small_objects;        ///< as the camera sees them; none unless the anti-aliasing asks for them
 
   /// Index into materials of what a hit shows: the instance's, or else the triangle's own, or else the shape's.

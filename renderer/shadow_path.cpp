@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/surface.h"
+#include "renderer/hit_surface.h"
 
 namespace raytree {
 namespace {
@@ -33,7 +33,7 @@ bool follow_shadow(const Scene& scene, MediaTable* media, const Hit& hit, Shadow
     path.transmittance = Rgb();
     return false;
   }
-  const SurfacePoint point = surface_at(*scene.shapes, path.origin, path.direction, hit, false);
+  const SurfacePoint point = hit_surface(scene, path.origin, path.direction, hit);
   const bool leaving = path.direction.dot(point.geometric_normal) > 0;
   const bool counts = !is_same_crossing(path, hit, leaving, point);
   if (media != nullptr) {
@@ -61,7 +61,9 @@ bool follow_shadow(const Scene& scene, MediaTable* media, const Hit& hit, Shadow
   return path.distance > 0;
 }
 
-ShadowPaths::ShadowPaths(const Scene& scene, std::size_t capacity) : scene_(scene), rays_(capacity), hits_(capacity) {
+ShadowPaths::ShadowPaths(const Scene& scene, std::size_t capacity)
+    : scene_(scene), rays_(capacity), samples_(capacity), hits_(capacity) {
+  rays_.sample = samples_.data();
   paths_.reserve(capacity);
   live_.reserve(capacity);
 }
@@ -69,6 +71,7 @@ ShadowPaths::ShadowPaths(const Scene& scene, std::size_t capacity) : scene_(scen
 void ShadowPaths::add(const RayBatch& rays, std::size_t ray, MediaId media) {
   ShadowPath& path = paths_.emplace_back(rays.origin(ray), rays.direction(ray), rays.max_distance[ray], media);
   path.ray = static_cast<std::uint32_t>(ray);
+  if (rays.sample != nullptr) path.sample = rays.sample[ray];
 }
 
 void ShadowPaths::follow(MediaTable* media) {
@@ -79,6 +82,7 @@ void ShadowPaths::follow(MediaTable* media) {
       ShadowPath& path = paths_[live_[i]];
       ++path.queries;
       rays_.set(i, path.origin, path.direction, path.distance);
+      samples_[i] = path.sample;
     }
     rays_.size = live_.size();
     scene_.intersector->intersect(rays_, Coherence::incoherent, hits_);

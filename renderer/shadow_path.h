@@ -27,6 +27,7 @@ struct ShadowPath {
   Rgb transmittance{1, 1, 1};  ///< so far: in [0, 1]
   std::uint32_t ray = 0;       ///< of its batch
   std::uint32_t queries = 0;   ///< nearest hits asked for
+  std::uint16_t sample = 0;    ///< as RayBatch has it
   MediaId media = kNoMedia;    ///< that it is in, where media are tracked
   // The surface crossed last.
   GeometryId geometry = kNoGeometry;
@@ -61,6 +62,7 @@ class ShadowPaths {
   std::vector<ShadowPath> paths_;
   std::vector<std::uint32_t> live_;  ///< into paths_, of those that are not at their end
   RayBatch rays_;
+  std::vector<std::uint16_t> samples_;  ///< of rays_
   HitBatch hits_;
 };
 

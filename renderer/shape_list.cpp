@@ -11,7 +11,9 @@
 #include "geometry/angle.h"
 #include "geometry/faceted_quadric.h"
 #include "geometry/mesh_file.h"
+#include "geometry/mesh_source.h"
 #include "geometry/patch_surface.h"
+#include "geometry/subdivision_patches.h"
 #include "geometry/subdivision_surface.h"
 #include "geometry/terrain.h"
 #include "geometry/tessellation.h"
@@ -127,7 +129,7 @@ class Assembler {
   const FacetSettings& settings() const { return scene_.render.facets; }
 
   void add_mesh(TriangleMesh&& mesh, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary,
-                std::unique_ptr<FacetRecord> record) {
+                std::unique_ptr<FacetRecord> record, std::unique_ptr<MeshSource> source = nullptr) {
     transform_mesh(mesh, shape.transform);
     if (record) finish_record(mesh, shape, method_, settings(), *record);
     summary.shading = enum_name(method_);
@@ -137,7 +139,7 @@ class Assembler {
     view.positions.swap(mesh.positions);
     summary.bounds = bounds(view);
     view.positions.swap(mesh.positions);
-    assembly.meshes.push_back({std::move(mesh), id, {}, std::move(record)});
+    assembly.meshes.push_back({std::move(mesh), id, {}, std::move(record), std::move(source)});
   }
 
   /// Triangles that a generator made, with the normals of what they stand for.
@@ -154,7 +156,14 @@ class Assembler {
       record->surface = std::move(surface);
       if (record->interpolation != FacetInterpolation::barycentric) note_polygons(mesh, *record);
     }
-    add_mesh(triangulate(std::move(mesh), shape.where, warnings_), shape, id, summary, std::move(record));
+    std::unique_ptr<MeshSource> source;
+    if (options_.keeps_sources() && !mesh.all_triangles()) {
+      source = std::make_unique<MeshSource>();
+      note_polygons(mesh, *source);
+      source->reversed = mirrors(shape.transform);
+    }
+    add_mesh(triangulate(std::move(mesh), shape.where, warnings_), shape, id, summary, std::move(record),
+             std::move(source));
   }
 
   /// A round shape cut in facets.
@@ -167,23 +176,36 @@ class Assembler {
     add_polygons(std::move(mesh), shape, id, summary, std::move(surface));
   }
 
-  /// What every curved shape becomes; `surface` lies in the shape's space.
-  void add_surface(std::shared_ptr<const ParametricSurface> surface, const ShapeDescription& shape, ShapeId id,
-                   ShapeSummary& summary) {
+  /// What every curved shape becomes; `surface` lies in the shape's space. `patches`: what it is made of, relative to
+  /// its origin, where that is to be kept and known.
+  void add_surface(std::shared_ptr<const ParametricSurface> surface, std::vector<LimitPatch>&& patches,
+                   const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     begin_phase("tessellating " + shape.name);
     const SurfaceTessellation tessellation(scene_, chosen_camera(scene_, options_.camera),
                                            options_.measure_tessellation);
     FacetParameters parameters;
-    const bool by_surface = method_ == ShadingMethod::limit;
+    const bool by_surface = method_ == ShadingMethod::limit, keeps = !patches.empty();
     TriangleMesh mesh =
-        tessellation.make(*surface, shape, places_, summary, warnings_, by_surface ? &parameters : nullptr);
+        tessellation.make(*surface, shape, places_, summary, warnings_, by_surface || keeps ? &parameters : nullptr);
+    std::unique_ptr<MeshSource> source;
+    if (keeps) {
+      source = std::make_unique<MeshSource>();
+      source->patches = std::move(patches);
+      source->parameters = parameters;
+      source->reversed = mirrors(shape.transform);
+      Matrix44d from_origin;
+      from_origin.setTranslation(surface->origin());
+      move_patches(*source, from_origin * shape.transform);
+    }
     set_vertex_normals(mesh, shape, method_);
     std::unique_ptr<FacetRecord> record = begin_record(shape, method_, settings());
     if (by_surface) {
       record->surface = true_surface(std::move(surface), std::move(parameters));
       record->reversed = mirrors(shape.transform);
     }
-    add_mesh(std::move(mesh), shape, id, summary, std::move(record));
+    MeshSource* const kept = source.get();
+    add_mesh(std::move(mesh), shape, id, summary, std::move(record), std::move(source));
+    if (kept != nullptr) kept->pixel = tessellation.pixel_size(places_, summary.bounds);
   }
 
   void add_kind(MeshShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
@@ -226,13 +248,16 @@ class Assembler {
     const auto surface = std::make_shared<PatchSurface>(surface_patches(kind, scene_.folder, shape.where, warnings_),
                                                         surface_options(kind), shape.where, warnings_);
     summary.faces_by_size[1] = static_cast<std::int64_t>(surface->face_count());
-    add_surface(surface, shape, id, summary);
+    add_surface(surface, options_.keeps_sources() ? surface->limit_patches() : std::vector<LimitPatch>(), shape, id,
+                summary);
   }
 
   void add_subdivided(const PolygonMesh& mesh, const MeshShape& kind, const ShapeDescription& shape, ShapeId id,
                       ShapeSummary& summary) {
     const SubdivisionRules rules = joined(mesh.subdivision.value_or(SubdivisionRules{}), *kind.subdivision);
-    add_surface(make_subdivision_surface(mesh, rules, shape.where, warnings_), shape, id, summary);
+    std::vector<LimitPatch> patches;
+    if (options_.keeps_sources()) patches = subdivision_patches(mesh, rules, shape.where);
+    add_surface(make_subdivision_surface(mesh, rules, shape.where, warnings_), std::move(patches), shape, id, summary);
   }
 
   /// Gives each triangle the material of its face's group.
@@ -420,6 +445,14 @@ void move_to_space(ShapeList& list, const Vec3d& origin, BoundedShapes& shapes) 
       for_each_index(entry.mesh.positions.size(),
                      [&](std::size_t i) { entry.mesh.positions[i] = Vec3f(Vec3d(entry.mesh.positions[i]) + shift); });
     entry.mesh.origin = {0, 0, 0};
+    if (entry.source && entry.source->curved()) {
+      auto moved = std::make_shared<MeshSource>(*entry.source);
+      Matrix44d to_space;
+      to_space.setTranslation(-origin);
+      move_patches(*moved, to_space);
+      moved->pixel.from_eye = to_space.inverse() * moved->pixel.from_eye;
+      entry.source = std::move(moved);
+    }
   }
   shapes.meshes = std::move(list.meshes);
 

@@ -146,4 +146,13 @@ TriangleMesh SurfaceTessellation::make(const ParametricSurface& surface, const S
   }
 }
 
+PixelSize SurfaceTessellation::pixel_size(const ListPlaces& places, const Bounds3d& box) const {
+  const TessellationView view = nearest_view(view_, places, box);
+  Matrix44d to_eye;
+  to_eye.setTranslation(-view.eye);
+  const bool perspective = view.projection == TessellationView::Projection::perspective;
+  const double pixel = view.pixel / largest_stretch(view.to_world);
+  return {view.to_world * to_eye, perspective ? pixel : 0, perspective ? 0 : pixel};
+}
+
 }  // namespace raytree

@@ -6,6 +6,7 @@
 
 #include "geometry/error.h"
 #include "geometry/facet_record.h"
+#include "geometry/mesh_source.h"
 #include "geometry/parametric_surface.h"
 #include "geometry/tessellation_view.h"
 #include "geometry/triangle_mesh.h"
@@ -39,6 +40,10 @@ class SurfaceTessellation {
   /// `parameters`: see tessellate(). Throws Error (bad_input).
   TriangleMesh make(const ParametricSurface& surface, const ShapeDescription& shape, const ListPlaces& places,
                     ShapeSummary& summary, Warnings& warnings, FacetParameters* parameters = nullptr) const;
+
+  /// How wide a pixel is at places of a list of shapes, near those in `box`: at least as narrow as any of its uses is
+  /// seen with.
+  PixelSize pixel_size(const ListPlaces& places, const Bounds3d& box) const;
 
  private:
   TessellationSettings settings_;

@@ -1,0 +1,188 @@
+#include "benchmarks/ray_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/surface.h"
+
+namespace raytree::benchmarks {
+namespace {
+
+/// Surfaces that one ray may pass in a row, each excused.
+constexpr int kMostPassed = 16;
+
+SurfaceId id_of(const Hit& hit) { return {hit.geometry, hit.primitive, hit.instance}; }
+SurfaceId id_of(const ReferenceHit& hit) { return {hit.geometry, hit.primitive, hit.instance}; }
+
+double ulp(float x) { return double(std::nextafter(x, std::numeric_limits<float>::infinity())) - double(x); }
+
+/// Why rounding may both find and miss the surface; agree: it may not.
+RayVerdict excuse(const SurfaceBounds& bounds) {
+  if (bounds.grazing) return RayVerdict::grazing;
+  if (std::abs(bounds.distance) <= bounds.distance_error) return RayVerdict::self;
+  return bounds.side == SurfaceBounds::Side::uncertain ? RayVerdict::edge : RayVerdict::agree;
+}
+
+RayComparison comparison(RayVerdict verdict, const SurfaceBounds& bounds) {
+  return {verdict, 0, bounds.edge_distance, bounds.edge_error, bounds.distance_error, bounds.position_error};
+}
+
+}  // namespace
+
+ReferenceHit RayJudge::ask_truth(const ComparedRay& ray) const {
+  return truth_.nearest(Vec3d(ray.origin), Vec3d(ray.direction), ray.max_distance);
+}
+
+Hit RayJudge::ask_tracer(const ComparedRay& ray) const {
+  RayBatch rays(1);
+  HitBatch hits(1);
+  rays.push(ray.origin, ray.direction, ray.max_distance);
+  tracer_.intersect(rays, Coherence::incoherent, hits);
+  return hits[0];
+}
+
+/// The truth's hit, before `end` of the fast tracer's, was not reported. So were all that follow it up to there.
+RayComparison RayJudge::missed(const ComparedRay& ray, const ReferenceHit& found, double end, double end_error) const {
+  RayComparison first{};
+  ReferenceHit next = found;
+  for (int passed = 0; passed < kMostPassed; ++passed) {
+    const SurfaceBounds bounds = surface_bounds(truth_shapes_, ray.origin, ray.direction, id_of(next), next.distance);
+    RayVerdict verdict = excuse(bounds);
+    if (verdict == RayVerdict::agree && next.distance + bounds.distance_error + end_error >= end)
+      verdict = RayVerdict::coplanar;
+    if (verdict == RayVerdict::agree) return comparison(RayVerdict::defect, bounds);
+    if (passed == 0) first = comparison(verdict, bounds);
+    // On behind it: what meets it there is excused alike.
+    const double after = next.distance + (std::abs(next.distance) + Vec3d(ray.origin).length()) * 0x1p-40;
+    if (!(after < end)) return first;
+    next = truth_.nearest(Vec3d(ray.origin) + Vec3d(ray.direction) * after, Vec3d(ray.direction), end - after);
+    if (!next.hit()) return first;
+    next.distance += after;
+  }
+  return first;
+}
+
+/// The fast tracer found a surface that the truth does not, or finds behind `found`.
+RayComparison RayJudge::extra(const ComparedRay& ray, const SurfaceBounds& bounds, const ReferenceHit& found) const {
+  RayVerdict verdict = excuse(bounds);
+  if (verdict == RayVerdict::agree) {
+    double end = ray.max_distance, end_error = 0;
+    if (found.hit()) {
+      end = found.distance;
+      end_error = surface_bounds(truth_shapes_, ray.origin, ray.direction, id_of(found), end).distance_error;
+    }
+    verdict = bounds.distance + bounds.distance_error + end_error >= end ? RayVerdict::coplanar : RayVerdict::defect;
+  }
+  return comparison(verdict, bounds);
+}
+
+RayComparison RayJudge::nearest(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found) const {
+  const RayComparison result = nearest_on_facets(ray, hit, found);
+  return result.verdict == RayVerdict::defect ? deviating(ray, hit, found, result) : result;
+}
+
+/// What the facets do not explain, where the truth finds hits off them: that they lie off what they stand for. A ray
+/// that is moved by as much must then find what the fast tracer found.
+RayComparison RayJudge::deviating(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found,
+                                  const RayComparison& otherwise) const {
+  const Vec3d origin(ray.origin), direction(ray.direction);
+  const bool hits = hit.geometry != kNoGeometry;
+  SurfaceDeviation of_hit, of_found;
+  Vec3d normal(0);
+  if (hits) {
+    of_hit = surface_deviation(truth_shapes_, tolerance_, id_of(hit), kNoFace, origin + direction * hit.distance);
+    normal = Vec3d(surface_at(shapes_, ray.origin, ray.direction, hit, false).geometric_normal);
+  }
+  if (found.hit())
+    of_found =
+        surface_deviation(truth_shapes_, tolerance_, id_of(found), found.face, origin + direction * found.distance);
+  const double off = std::max(of_hit.distance, of_found.distance);
+  if (!(off > 0)) return otherwise;
+  RayComparison excused = otherwise;
+  excused.verdict = of_hit.curved || of_found.curved ? RayVerdict::tessellation : RayVerdict::nonplanar;
+  excused.edge_error = off;
+  // Along the ray what lies off by so much is met earlier or later by that over the cosine.
+  const auto is_alike = [&](const ReferenceHit& other) {
+    if (!hits || !other.hit()) return hits == other.hit();
+    if (other.geometry != hit.geometry || other.instance != hit.instance) return false;
+    const double cosine = std::min(std::abs(normal.dot(direction)), std::abs(other.normal.dot(direction)));
+    return std::abs(other.distance - hit.distance) * cosine <= 2 * off + otherwise.distance_error * cosine;
+  };
+  if (is_alike(found)) return excused;
+  const Vec3d u = (std::abs(direction.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)).cross(direction).normalized();
+  const Vec3d v = direction.cross(u), diagonal = (u + v) * std::sqrt(0.5), other_diagonal = (u - v) * std::sqrt(0.5);
+  for (const double share : {0.0625, 0.125, 0.25, 0.5, 1.0})
+    for (const Vec3d& way : {u, -u, v, -v, diagonal, -diagonal, other_diagonal, -other_diagonal, found.normal,
+                             -found.normal, normal, -normal})
+      if (is_alike(truth_.nearest(origin + way * (off * share), direction, ray.max_distance))) return excused;
+  return otherwise;
+}
+
+RayComparison RayJudge::nearest_on_facets(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found) const {
+  const bool hits = hit.geometry != kNoGeometry;
+  if (!hits && !found.hit()) return {};
+  if (!hits) return missed(ray, found, ray.max_distance, 0);
+  const SurfaceBounds bounds = surface_bounds(shapes_, ray.origin, ray.direction, id_of(hit), hit.distance);
+  // A truth that knows what triangles stand for names one by the surface's parameters: any of the mesh will do.
+  if (found.face != kNoFace && found.geometry == hit.geometry && found.instance == hit.instance && !bounds.grazing &&
+      id_of(hit) != id_of(found) && std::abs(hit.distance - found.distance) <= bounds.distance_error)
+    return {RayVerdict::agree,     std::abs(hit.distance - found.distance) / ulp(hit.distance),
+            bounds.edge_distance,  bounds.edge_error,
+            bounds.distance_error, bounds.position_error};
+  if (found.hit() && id_of(hit) == id_of(found)) {
+    const double off = std::abs(hit.distance - found.distance);
+    const SurfaceDeviation deviation =
+        found.face == kNoFace ? SurfaceDeviation()
+                              : surface_deviation(truth_shapes_, tolerance_, id_of(found), found.face,
+                                                  Vec3d(ray.origin) + Vec3d(ray.direction) * found.distance);
+    const Vec3f normal = surface_at(shapes_, ray.origin, ray.direction, hit, false).geometric_normal;
+    if (!bounds.grazing && off <= bounds.distance_error &&
+        (deviation.distance > 0 || (Vec3d(normal) - found.normal).length() <= bounds.normal_error))
+      return {RayVerdict::agree, off / ulp(hit.distance), bounds.edge_distance,
+              bounds.edge_error, bounds.distance_error,   bounds.position_error};
+    const SurfaceBounds own = surface_bounds(truth_shapes_, ray.origin, ray.direction, id_of(found), found.distance);
+    const RayVerdict verdict = excuse(own);
+    return comparison(verdict == RayVerdict::agree ? RayVerdict::defect : verdict, own);
+  }
+  // What the fast tracer says must be what rounding can make of this ray and this surface.
+  if (bounds.side == SurfaceBounds::Side::outside ||
+      (!bounds.grazing && std::abs(hit.distance - bounds.distance) > bounds.distance_error))
+    return comparison(RayVerdict::defect, bounds);
+  if (found.hit() && found.distance <= hit.distance) return missed(ray, found, hit.distance, bounds.distance_error);
+  return extra(ray, bounds, found);
+}
+
+RayComparison RayJudge::occlusion(const ComparedRay& ray, bool occluded, const ReferenceHit& found) const {
+  if (occluded == found.hit()) return {};
+  if (!occluded) {
+    const RayComparison result = missed(ray, found, ray.max_distance, 0);
+    return result.verdict == RayVerdict::defect ? deviating(ray, Hit(), found, result) : result;
+  }
+  // What was in the way is not said: the ray is asked again, alone.
+  const Hit hit = ask_tracer(ray);
+  if (hit.geometry != kNoGeometry) return nearest(ray, hit, found);
+  RayComparison result;
+  result.verdict = is_near_outline(ray) ? RayVerdict::edge : RayVerdict::defect;
+  return result;
+}
+
+/// Whether the outline of something lies within its bound of the ray: looked for with rays that start beside it.
+bool RayJudge::is_near_outline(const ComparedRay& ray) const {
+  const Vec3d direction(ray.direction);
+  const Vec3d u = (std::abs(direction.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)).cross(direction).normalized();
+  const Vec3d v = direction.cross(u);
+  const double origin = Vec3d(ray.origin).length();
+  const double reach = origin + (std::isfinite(ray.max_distance) ? double(ray.max_distance) : origin);
+  for (const double step : {0x1p-24, 0x1p-22, 0x1p-20, 0x1p-18})
+    for (const Vec3d& way : {u, -u, v, -v, u + v, u - v, v - u, -u - v}) {
+      const ReferenceHit beside = truth_.nearest(Vec3d(ray.origin) + way * (step * reach), direction, ray.max_distance);
+      if (!beside.hit()) continue;
+      const SurfaceBounds bounds =
+          surface_bounds(truth_shapes_, ray.origin, ray.direction, id_of(beside), beside.distance);
+      if (bounds.grazing || bounds.side == SurfaceBounds::Side::uncertain) return true;
+    }
+  return false;
+}
+
+}  // namespace raytree::benchmarks
