@@ -1,6 +1,7 @@
 // Whole pictures by the sphere-bounded tracer: what Embree shows but for edges, whatever the shapes; the same bits for
 // any number of threads and either search; and nothing kept where nobody asks for it.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -130,6 +131,17 @@ TEST(SphereBoundedPicture, EveryKindOfShape) {
   expect_the_same_picture(make, 0.03);
 }
 
+/// Quads that are flat but for rounding: what enters their glass does not meet the same quad again.
+TEST(SphereBoundedPicture, GlassOfPolygons) {
+  const auto make = [] {
+    SceneDescription scene = builtin_scene("glass");
+    scene.image = {48, 32};
+    scene.render.antialias = {Antialiasing::Method::none, 1};
+    return scene;
+  };
+  expect_the_same_picture(make, 0.03);
+}
+
 /// Curved surfaces are exact for one tracer and tessellated to a quarter of a pixel for the other; outlines and what
 /// is mirrored differ by that. Nothing shadows itself: pixels off edges agree.
 TEST(SphereBoundedPicture, CurvedSurfaces) {
@@ -189,6 +201,7 @@ TEST(SphereBoundedPicture, BitsDependOnNeitherThreadsNorSearch) {
     scene.shapes.back().transform = translation({1.6, 0, 0.5});
     return scene;
   };
+  const tbb::global_control more_threads(tbb::global_control::max_allowed_parallelism, 3);
   const RenderResult reference = traced(make(), by_spheres(Search::linear), 1);
   for (const int threads : {2, 3}) {
     const RenderResult result = traced(make(), by_spheres(Search::hierarchy), threads, 99);
