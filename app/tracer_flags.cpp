@@ -84,13 +84,11 @@ void apply_tracer_flags(const SceneFlags& flags, PrepareOptions& options) {
   if (!flags.hierarchy.empty()) hierarchy_named(flags.hierarchy);
   options.hierarchy = flags.hierarchy;
   options.memory_allowed = parse_memory(flags.memory);
-  if (!flags.intersector.empty())
-    options.tracer = entry_named("--intersector", flags.intersector, kTracers).tracer;
+  if (!flags.intersector.empty()) options.tracer = entry_named("--intersector", flags.intersector, kTracers).tracer;
   if (!flags.sphere_size.empty()) {
     options.spheres.sphere_pixels = parse_real("--sphere-size", flags.sphere_size);
     if (!(options.spheres.sphere_pixels >= kLeastSpherePixels))
-      throw usage_error(
-          fmt::format("--sphere-size: {} is less than {} pixels", flags.sphere_size, kLeastSpherePixels));
+      throw usage_error(fmt::format("--sphere-size: {} is less than {} pixels", flags.sphere_size, kLeastSpherePixels));
   }
   if (!flags.sphere_search.empty())
     options.spheres.search = entry_named("--sphere-search", flags.sphere_search, kSearches).search;

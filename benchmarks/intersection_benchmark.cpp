@@ -20,7 +20,6 @@ namespace {
 
 constexpr float kForever = std::numeric_limits<float>::infinity();
 constexpr float kGlassIndex = 1.5f;
-constexpr int kBlockWidth = 4, kBlockHeight = 2;
 
 bool stopped(const std::atomic<bool>* stop) { return stop != nullptr && stop->load(std::memory_order_relaxed); }
 

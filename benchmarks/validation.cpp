@@ -18,7 +18,6 @@ namespace raytree::benchmarks {
 namespace {
 
 /// Eye rays go to the tracer in blocks of so many along x and y, as the renderer has it.
-constexpr int kBlockWidth = 4, kBlockHeight = 2;
 
 /// A number made of a pixel's place that tells nothing about it (SplitMix64, Steele et al. 2014).
 std::uint64_t hash(std::uint64_t x, std::uint64_t y) {

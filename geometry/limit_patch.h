@@ -12,7 +12,7 @@ namespace raytree {
 
 struct LimitPatch {
   BezierPatch patch;
-  std::uint32_t face = 0;                 ///< of the surface that it is a piece of
+  std::uint32_t face = 0;                ///< of the surface that it is a piece of
   FaceDomain domain = FaceDomain::quad;  ///< of that face
   /// The face's parameters at (s, t) of the patch: corner + s along_u + t along_v. Right-handed: the outside of the
   /// patch is that of the surface.

@@ -16,9 +16,9 @@ namespace raytree {
 
 /// How wide a pixel is at a place, in the units of the space that the mesh lies in.
 struct PixelSize {
-  Matrix44d from_eye;       ///< that space to places relative to the eye, in world units
-  double at_distance = 0;   ///< a perspective view's pixel one world unit from the eye, by units of that space
-  double everywhere = 1;    ///< added to it: what an orthographic view's pixel is; 0 for a perspective view
+  Matrix44d from_eye;      ///< that space to places relative to the eye, in world units
+  double at_distance = 0;  ///< a perspective view's pixel one world unit from the eye, by units of that space
+  double everywhere = 1;   ///< added to it: what an orthographic view's pixel is; 0 for a perspective view
 
   double operator()(const Vec3d& place) const { return at_distance * (place * from_eye).length() + everywhere; }
 };

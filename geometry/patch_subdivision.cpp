@@ -167,8 +167,8 @@ class Search {
       u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1.0);
       if (moved <= 0x1p-48 || (moved >= last && moved <= 0x1p-40)) {
         // Not before the part: what is skipped for beginning behind another hit must not lie in front of it.
-        const double across = 2 * part.sphere.radius * std::sqrt(ray_.inverse_square);
-        if (t >= interval.enter && t <= interval.leave + across) hit = {t, u, v, hit.level};
+        const double beyond = 2 * part.sphere.radius * std::sqrt(ray_.inverse_square);
+        if (t >= interval.enter && t <= interval.leave + beyond) hit = {t, u, v, hit.level};
         return;
       }
       last = moved;

@@ -8,8 +8,8 @@
 
 namespace raytree {
 
-/// A part that small must also be this flat, its control points off their middle plane by no more than this share of the
-/// least radius, or be divided on (kMostFlatteningLevels times). So rays that leave a surface may start this close.
+/// A part that small must also be this flat, its control points off their middle plane by no more than this share of
+/// the least radius, or be divided on (kMostFlatteningLevels times). So rays that leave a surface may start this close.
 inline constexpr double kFlatShare = 1.0 / 32;
 inline constexpr int kMostFlatteningLevels = 6;
 /// Beyond it parameters of single precision tell no parts apart.

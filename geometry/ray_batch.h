@@ -17,6 +17,9 @@ inline constexpr std::size_t kBatchPadding = 16;    ///< a batch may be read in 
 
 inline constexpr std::size_t kBatchSize = 1024;  ///< rays that the ray tree has in flight at once
 
+/// Pixels whose eye rays fill a packet of eight: batches of eye rays come block by block.
+inline constexpr int kBlockWidth = 4, kBlockHeight = 2;
+
 namespace detail {
 struct AlignedDelete {
   void operator()(std::byte* block) const { ::operator delete[](block, std::align_val_t(kBatchAlignment)); }

@@ -35,8 +35,8 @@ void intersect_one_by_one(const ReferenceTracer& tracer, const RayBatch& rays, H
 
 void occluded_one_by_one(const ReferenceTracer& tracer, const RayBatch& rays, std::uint8_t* occluded) noexcept {
   for (std::size_t i = 0; i < rays.size; ++i)
-    occluded[i] = is_traceable(rays, i) && tracer.is_occluded(Vec3d(rays.origin(i)), Vec3d(rays.direction(i)),
-                                                                double(rays.max_distance[i]));
+    occluded[i] = is_traceable(rays, i) &&
+                  tracer.is_occluded(Vec3d(rays.origin(i)), Vec3d(rays.direction(i)), double(rays.max_distance[i]));
 }
 
 }  // namespace raytree

@@ -155,8 +155,7 @@ struct SphereBoundedIntersector::State {
     if (nearest.instance == kNoInstance) return scene[0].objects.describe(nearest.object, ray, nearest.at);
     const Instance& instance = shapes.instances[nearest.instance];
     const InstanceTransform transform(instance);
-    ReferenceHit hit =
-        groups[instance.group].objects.describe(nearest.object, ray_inside(transform, ray), nearest.at);
+    ReferenceHit hit = groups[instance.group].objects.describe(nearest.object, ray_inside(transform, ray), nearest.at);
     hit.instance = nearest.instance;
     hit.normal = transform.normal(hit.normal).normalized();
     return hit;
@@ -193,7 +192,9 @@ void SphereBoundedIntersector::occluded(const RayBatch& rays, Coherence, std::ui
 }
 
 std::size_t SphereBoundedIntersector::memory_bytes() const noexcept { return state_->held(); }
-std::size_t SphereBoundedIntersector::peak_memory_bytes() const noexcept { return std::max(state_->peak, state_->held()); }
+std::size_t SphereBoundedIntersector::peak_memory_bytes() const noexcept {
+  return std::max(state_->peak, state_->held());
+}
 
 std::size_t SphereBoundedIntersector::object_count() const noexcept {
   std::size_t sum = state_->scene[0].searched().size();

@@ -30,9 +30,9 @@ struct SphereBoundedOptions {
 /// - sphere (its own bound), disc, cone or cylinder: closed forms;
 /// - plane: unbounded, tried by every ray;
 /// - n-gon (of meshes that have their MeshSource; else triangle): the plane through the mean of its corners with
-///   Newell's normal, and its outline as seen along the ray (polygon_crossing.h). For a flat one that is point-in-polygon.
-///   One that is not flat is its outline from everywhere and its plane in depth: watertight with its neighbors from
-///   everywhere, too, but not a point set; its depth stays within that of its corners;
+///   Newell's normal, and its outline as seen along the ray (polygon_crossing.h). For a flat one that is
+///   point-in-polygon. One that is not flat is its outline from everywhere and its plane in depth: watertight with its
+///   neighbors from everywhere, too, but not a point set; its depth stays within that of its corners;
 /// - piece of a curved surface: by subdivision (patch_subdivision.h). Surfaces that are not made of bicubic patches
 ///   (Loop's scheme, Coons patches over rational curves) are the triangles that they were cut in.
 /// Polygons are watertight: rays at shared edges and corners of meshes go to one of the faces there.

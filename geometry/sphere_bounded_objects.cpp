@@ -135,8 +135,8 @@ bool ObjectList::intersect(std::uint32_t object, const ObjectRay& ray, const Ray
       distance = found.distance, hit.u = found.u, hit.v = found.v;
   } else {
     const Polygon polygon = polygon_of(entry, it.index);
-    const PolygonCrossing crossing = cross_polygon(
-        polygon.count, [&](std::size_t i) { return ray.picture(polygon.positions[polygon.corners[i]]); });
+    const PolygonCrossing crossing =
+        cross_polygon(polygon.count, [&](std::size_t i) { return ray.picture(polygon.positions[polygon.corners[i]]); });
     if (!crossing.inside) return false;
     distance = distance_to_plane(mean_corner(polygon.positions, polygon.corners, polygon.count),
                                  newell_normal(polygon.positions, polygon.corners, polygon.count), ray);
@@ -215,8 +215,8 @@ void ObjectList::describe_piece(const Object& object, const ObjectRay& ray, cons
   const LimitPatch& piece = source.patches[object.index];
   hit.face = piece.face;
   const PatchDerivatives surface = evaluate(piece.patch, at.u, at.v);
-  const Vec3d normal = patch_normal(piece.patch, surface, at.u, at.v, derivative_scale(piece.patch),
-                                    DegenerateNormal::limit);
+  const Vec3d normal =
+      patch_normal(piece.patch, surface, at.u, at.v, derivative_scale(piece.patch), DegenerateNormal::limit);
   hit.normal = unit_or(source.reversed ? -normal : normal, unit_or(-ray.direction, {0, 0, 1}));
 
   const Buffer<std::uint32_t>& faces = source.parameters.faces;

@@ -54,11 +54,13 @@ class SphereHierarchy {
         continue;
       }
       // The farther child waits.
-      std::array<RayInterval, 2> parts{nodes_[node.first].sphere.inside(ray), nodes_[node.first + 1].sphere.inside(ray)};
+      std::array<RayInterval, 2> parts{nodes_[node.first].sphere.inside(ray),
+                                       nodes_[node.first + 1].sphere.inside(ray)};
       const std::uint32_t near = parts[1].enter < parts[0].enter ? 1 : 0;
       for (const std::uint32_t child : {1 - near, near}) {
         const RayInterval& part = parts[child];
-        if (!part.empty() && part.leave >= 0 && part.enter <= limit) stack[waiting++] = {node.first + child, part.enter};
+        if (!part.empty() && part.leave >= 0 && part.enter <= limit)
+          stack[waiting++] = {node.first + child, part.enter};
       }
     }
     return false;

@@ -15,8 +15,8 @@ namespace {
 
 using Level = osd::Far::TopologyLevel;
 
-constexpr std::uint32_t kNoFace = 0xffffffffu;
 constexpr double kMostFaces = 1 << 29;  // their corners still fit OpenSubdiv's int
+constexpr std::uint32_t kNoSourceFace = 0xffffffffu;
 
 /// interpolate(level, from) gives the values of a level from those of the one before.
 template <class Wide, class Narrow, class Interpolate>
@@ -99,7 +99,8 @@ class Refinement {
     const osd::Bfr::RefinerSurfaceFactory<> factory(*refiner_);
     sources_.resize(mesh_.face_count());
     for (std::size_t face = 0; face < sources_.size(); ++face)
-      sources_[face] = factory.FaceHasLimitSurface(static_cast<int>(face)) ? static_cast<std::uint32_t>(face) : kNoFace;
+      sources_[face] =
+          factory.FaceHasLimitSurface(static_cast<int>(face)) ? static_cast<std::uint32_t>(face) : kNoSourceFace;
     for (int l = 1; l <= levels; ++l) {
       const Level& level = refiner_->GetLevel(l);
       std::vector<std::uint32_t> children(static_cast<std::size_t>(level.GetNumFaces()));
@@ -125,7 +126,7 @@ class Refinement {
       if (const float sharpness = level.GetVertexSharpness(vertex); sharpness > 0)
         result.corners.push_back({static_cast<std::uint32_t>(vertex), double(sharpness)});
     for (std::size_t face = 0; face < sources_.size(); ++face)
-      if (sources_[face] == kNoFace) result.holes.push_back(static_cast<std::uint32_t>(face));
+      if (sources_[face] == kNoSourceFace) result.holes.push_back(static_cast<std::uint32_t>(face));
     return result;
   }
 
@@ -134,8 +135,9 @@ class Refinement {
   const RefinedPoints points_;
   const SourceLocation& where_;
   std::unique_ptr<osd::Far::TopologyRefiner> refiner_;
-  PolygonMesh cage_;                    // refined, with all faces
-  std::vector<std::uint32_t> sources_;  // [faces of cage_] the face that each came from; kNoFace: it has no surface
+  PolygonMesh cage_;  // refined, with all faces
+  std::vector<std::uint32_t>
+      sources_;  // [faces of cage_] the face that each came from; kNoSourceFace: it has no surface
 };
 
 void Refinement::move_to_limit() {
@@ -190,7 +192,7 @@ PolygonMesh Refinement::result() && {
   std::vector<std::uint32_t> order;
   for (std::size_t face = 0; face < sources_.size(); ++face) {
     first_corners[face + 1] = first_corners[face] + (cage_.all_triangles() ? 3 : cage_.face_sizes[face]);
-    if (sources_[face] != kNoFace) order.push_back(static_cast<std::uint32_t>(face));
+    if (sources_[face] != kNoSourceFace) order.push_back(static_cast<std::uint32_t>(face));
   }
   if (order.empty())
     throw Error(ErrorKind::bad_input, where_,

@@ -5,6 +5,7 @@
 
 #include "geometry/instance_transform.h"
 #include "geometry/mesh_source.h"
+#include "geometry/newell.h"
 #include "geometry/patch_subdivision.h"
 
 namespace raytree {
@@ -18,6 +19,33 @@ constexpr double kPartClearance = 4 * kFlatShare;
 /// much for the product.
 constexpr double kDistanceError = 4 * 0x1p-24;
 
+/// A hit on an n-gon: on its plane, to the outside of which new rays start. `place`: where the ray meets it, to
+/// `error`.
+void move_to_polygon(const MeshEntry& entry, std::uint32_t triangle, const InstanceTransform* transform,
+                     const Vec3d& place, double error, SurfacePoint& point) {
+  const MeshSource& source = *entry.source;
+  const std::uint32_t face = entry.mesh.triangle_faces.empty() ? triangle : entry.mesh.triangle_faces[triangle];
+  const std::uint32_t first = source.starts[face], count = source.starts[face + 1] - first;
+  if (count == 3) return;
+  Vec3d normal = newell_normal(entry.mesh.positions.data(), &source.corners[first], count);
+  if (source.reversed) normal = -normal;
+  if (transform != nullptr) normal = transform->normal(normal);
+  const double length = normal.length();
+  if (!(length > 0)) return;
+  normal /= length;
+  const double off = std::abs((place - Vec3d(point.position)).dot(normal));
+  if (off <= double(point.clearance) / 2 + error) {
+    // Flat, to rounding: the triangle's own place is the better one. New rays clear the polygon's plane also.
+    point.clearance += static_cast<float>(off);
+    return;
+  }
+  const bool flat_shading = point.shading_normal == point.geometric_normal;
+  point.position = Vec3f(place);
+  point.geometric_normal = Vec3f(normal);
+  if (flat_shading) point.shading_normal = point.geometric_normal;
+  point.clearance += static_cast<float>(error);
+}
+
 }  // namespace
 
 void move_to_true_surface(const ShapeSet& shapes, double sphere_pixels, const Vec3f& origin, const Vec3f& direction,
@@ -29,20 +57,18 @@ void move_to_true_surface(const ShapeSet& shapes, double sphere_pixels, const Ve
     transform.emplace(shapes.instances[hit.instance]);
     list = &shapes.groups[shapes.instances[hit.instance].group];
   }
-  const MeshSource* source = list->meshes[hit.geometry - kFirstMeshGeometry].source.get();
-  if (source == nullptr || !source->leaves_triangles()) return;
+  const MeshEntry& entry = list->meshes[hit.geometry - kFirstMeshGeometry];
+  if (!entry.source || !entry.source->leaves_triangles()) return;
   const Vec3d place = Vec3d(origin) + Vec3d(direction) * double(hit.distance);
-  double clearance = kDistanceError * (double(hit.distance) + place.length());
-  if (source->curved()) {
-    const double radius = sphere_pixels * source->pixel(transform ? transform->point_inside(place) : place);
-    clearance += kPartClearance * radius * (transform ? transform->stretch() : 1);
-  } else if (std::abs((place - Vec3d(point.position)).dot(Vec3d(point.geometric_normal))) <=
-             double(point.clearance) + clearance) {
-    return;  // a flat polygon, to rounding: the triangle's own place is the better one
-  }
-  point.position = Vec3f(place);
-  point.clearance += static_cast<float>(clearance);
+  const double error = kDistanceError * (double(hit.distance) + place.length());
   point.distance = hit.distance;
+  if (!entry.source->curved()) {
+    move_to_polygon(entry, hit.primitive, transform ? &*transform : nullptr, place, error, point);
+    return;
+  }
+  const double radius = sphere_pixels * entry.source->pixel(transform ? transform->point_inside(place) : place);
+  point.position = Vec3f(place);
+  point.clearance += static_cast<float>(error + kPartClearance * radius * (transform ? transform->stretch() : 1));
 }
 
 void move_to_true_surfaces(const ShapeSet& shapes, double sphere_pixels, const RayBatch& rays, const HitBatch& hits,

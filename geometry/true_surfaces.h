@@ -9,9 +9,9 @@
 
 namespace raytree {
 
-/// Moves `point`, the surface at the hit as its triangle has it, to where the ray meets the true surface; the normals
-/// stay. New rays then clear the parts that the surface was divided in, of `sphere_pixels`, also. Without effect where
-/// the mesh keeps no source.
+/// Moves `point`, the surface at the hit as its triangle has it, to where the ray meets the true surface. On a curved
+/// one normals stay, and new rays clear the parts that it was divided in, of `sphere_pixels`, also. On the plane of an
+/// n-gon that is not flat the geometric normal is the plane's. Without effect where the mesh keeps no source.
 void move_to_true_surface(const ShapeSet& shapes, double sphere_pixels, const Vec3f& origin, const Vec3f& direction,
                           const Hit& hit, SurfacePoint& point);
 

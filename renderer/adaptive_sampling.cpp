@@ -105,7 +105,7 @@ void AdaptiveSampler::list_small_objects() {
 
 /// The corners of the tile's pixels, in blocks of a packet, and the pixels as squares between them.
 void AdaptiveSampler::add_pixels() {
-  constexpr int kBlockWidth = 4, kBlockHeight = 2, kStride = kTileSize + 1;
+  constexpr int kStride = kTileSize + 1;
   std::array<std::uint32_t, kStride * kStride> corner;
   for (int block_y = 0; block_y <= height_; block_y += kBlockHeight)
     for (int block_x = 0; block_x <= width_; block_x += kBlockWidth)

@@ -285,8 +285,7 @@ void SampleTracer::State::find_hits() {
   if (point_count < rays.size) add_background();
   prefetch_triangles(*scene.shapes);
   find_surfaces(*scene.shapes, rays, hits, wants_texture, shading.surfaces);
-  if (scene.sphere_pixels > 0)
-    move_to_true_surfaces(*scene.shapes, scene.sphere_pixels, rays, hits, shading.surfaces);
+  if (scene.sphere_pixels > 0) move_to_true_surfaces(*scene.shapes, scene.sphere_pixels, rays, hits, shading.surfaces);
   if (shades_facets()) add_facets();
   shading.turn_to_rays(rays);
 }

@@ -140,7 +140,7 @@ class Scene {
   bool shades_facets = false;        ///< some mesh has a FacetRecord
   /// Larger than 0: hits lie on what meshes were made of (true_surfaces.h), found to spheres of so many pixels.
   double sphere_pixels = 0;
-  SmallObjects small_objects;        ///< as the camera sees them; none unless the anti-aliasing asks for them
+  SmallObjects small_objects;  ///< as the camera sees them; none unless the anti-aliasing asks for them
 
   /// Index into materials of what a hit shows: the instance's, or else the triangle's own, or else the shape's.
   std::uint32_t material_at(const Hit& hit) const {

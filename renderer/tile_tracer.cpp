@@ -10,7 +10,6 @@ namespace raytree {
 namespace {
 
 /// Eye samples are traced in blocks of so many along x and y, which makes a packet of eight.
-constexpr int kBlockWidth = 4, kBlockHeight = 2;
 
 /// Adaptive sampling looks at what samples hit, whatever the channels are.
 SampleRecords records_for(const ChannelSet& channels, const Antialiasing& antialias) {

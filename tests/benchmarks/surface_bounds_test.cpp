@@ -14,10 +14,9 @@
 namespace raytree::benchmarks {
 namespace {
 
-
-class Random {
+class RandomFloats {
  public:
-  explicit Random(unsigned seed) : generator_(seed) {}
+  explicit RandomFloats(unsigned seed) : generator_(seed) {}
   float uniform(float least, float most) { return std::uniform_real_distribution<float>(least, most)(generator_); }
   Vec3f in_box(float half) { return {uniform(-half, half), uniform(-half, half), uniform(-half, half)}; }
 
@@ -39,7 +38,7 @@ Use use_of_bounds(const ShapeSet& shapes, int rays, unsigned seed, Aim&& aim) {
   const EmbreeIntersector tracer(shapes, options);
   const TriangleReference truth(shapes);
   const RayJudge judge(shapes, tracer, shapes, truth);
-  Random random(seed);
+  RandomFloats random(seed);
   Use use;
   for (int i = 0; i < rays; ++i) {
     ComparedRay ray;
@@ -69,7 +68,7 @@ ShapeSet one_triangle(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
 }
 
 TEST(SurfaceBounds, TrianglesKeepWithinThem) {
-  Random random(5);
+  RandomFloats random(5);
   double largest = 0;
   int hits = 0, agreed = 0;
   for (int t = 0; t < 60; ++t) {
@@ -77,7 +76,7 @@ TEST(SurfaceBounds, TrianglesKeepWithinThem) {
     const Vec3f a = random.in_box(3), along = random.in_box(1).normalized() * size;
     const Vec3f b = a + along, c = a + along * 0.4f + random.in_box(1).normalized() * (size * thin);
     const ShapeSet shapes = one_triangle(a, b, c);
-    const Use use = use_of_bounds(shapes, 500, 100 + t, [&](Random& r) {
+    const Use use = use_of_bounds(shapes, 500, 100 + t, [&](RandomFloats& r) {
       const float u = r.uniform(-0.1f, 1.1f), v = r.uniform(-0.1f, 1.1f) * (1 - u);
       return a + (b - a) * u + (c - a) * v;
     });
@@ -94,7 +93,7 @@ TEST(SurfaceBounds, TrianglesKeepWithinThem) {
 TEST(SurfaceBounds, RoundShapesKeepWithinThem) {
   for (const bool many : {false, true}) {  // few are tested beside Embree
     ShapeSet shapes;
-    Random random(6);
+    RandomFloats random(6);
     for (std::size_t i = 0; i < (many ? kMostFewShapes + 10 : 3); ++i) {
       const Vec3f p = random.in_box(5), q = random.in_box(5), n = random.in_box(1).normalized();
       shapes.spheres.center_radius.push_back({p.x, p.y, p.z, random.uniform(0.01f, 1)});
@@ -107,7 +106,7 @@ TEST(SurfaceBounds, RoundShapesKeepWithinThem) {
       shapes.cones.shape.push_back(0);
     }
     const auto count = shapes.spheres.center_radius.size();
-    const Use use = use_of_bounds(shapes, 20000, 7, [&](Random& r) {
+    const Use use = use_of_bounds(shapes, 20000, 7, [&](RandomFloats& r) {
       const auto i = static_cast<std::size_t>(r.uniform(0, static_cast<float>(count) - 0.5f));
       const Imath::V4f& round =
           r.uniform(0, 1) < 0.5f ? shapes.spheres.center_radius[i] : shapes.discs.center_radius[i];

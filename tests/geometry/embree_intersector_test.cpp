@@ -12,26 +12,14 @@
 #include "geometry/error.h"
 #include "geometry/ray_batch.h"
 #include "geometry/surface.h"
+#include "tests/random.h"
 
 namespace raytree {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  Vec3d in_cube(double reach) { return {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)}; }
-  Vec3d direction() {
-    std::normal_distribution<double> gauss;
-    const Vec3d v(gauss(engine_), gauss(engine_), gauss(engine_));
-    return unit(v);
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
+using test::Random;
 
 void add_triangle(ShapeSet& shapes, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   if (shapes.meshes.empty()) shapes.meshes.resize(1);

@@ -37,7 +37,7 @@ struct NormalError {
 template <class Patch, class Place, class Truth>
 NormalError outcome(const char* row, const Patch& patch, DegenerateNormal method, const Place& place,
                     const Truth& truth) {
-  constexpr const char* kNames[] = {"none", "Gouraud", "first order", "limit"};
+  constexpr const char* kRemedyNames[] = {"none", "Gouraud", "first order", "limit"};
   NormalError result;
   for (int i = 0; i <= 64; ++i) {
     const Vec2d at = place(i / 64.0);
@@ -48,7 +48,7 @@ NormalError outcome(const char* row, const Patch& patch, DegenerateNormal method
       result.worst = std::max(result.worst, degrees_between(found, truth(i / 64.0)));
   }
   std::printf("%s, %s: %d of 65 without a normal, others off by up to %.3g degrees\n", row,
-              kNames[static_cast<int>(method)], result.without, result.worst);
+              kRemedyNames[static_cast<int>(method)], result.without, result.worst);
   return result;
 }
 
@@ -160,16 +160,16 @@ TEST(DegenerateNormals, OfCoonsPatchesAndOnEverySide) {
   const auto turned_around = [&](const CoonsPatch& p) {
     return CoonsPatch{backwards(p.top), backwards(p.bottom), backwards(p.right), backwards(p.left)};
   };
-  struct Case {
+  struct PoleCase {
     CoonsPatch patch;
     Vec2d pole;
     double up;
   };
-  const Case cases[] = {{patch, {0.3, 1}, 1},
-                        {turned_around(patch), {0.3, 0}, 1},
-                        {transposed(patch), {1, 0.3}, -1},
-                        {transposed(turned_around(patch)), {0, 0.3}, -1}};
-  for (const Case& one : cases) {
+  const PoleCase cases[] = {{patch, {0.3, 1}, 1},
+                            {turned_around(patch), {0.3, 0}, 1},
+                            {transposed(patch), {1, 0.3}, -1},
+                            {transposed(turned_around(patch)), {0, 0.3}, -1}};
+  for (const PoleCase& one : cases) {
     EXPECT_EQ(normal(one.patch, one.pole.x, one.pole.y, DegenerateNormal::none), Vec3d(0, 0, 0));
     for (const DegenerateNormal method :
          {DegenerateNormal::gouraud, DegenerateNormal::first_order, DegenerateNormal::limit})

@@ -10,6 +10,7 @@
 #include <optional>
 #include <random>
 
+#include "geometry/ray_batch.h"
 #include "tests/geometry/reference_shapes.h"
 #include "tests/patch_samples.h"
 
@@ -17,8 +18,6 @@ namespace raytree {
 namespace {
 
 using test::Random;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A pixel of one unit everywhere, so that pixels are units.
 const PixelSize kUnit{};

@@ -50,11 +50,11 @@ TEST(PolygonCrossing, RaysAtSharedCornersAndEdgesLieInOneFace) {
       angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
       if (angles.size() < 3) break;
       std::vector<SeenCorner> rim;
-      for (const double a : angles) rim.push_back(at(16 * std::round(64 * std::cos(a)), 16 * std::round(64 * std::sin(a))));
+      for (const double a : angles)
+        rim.push_back(at(16 * std::round(64 * std::cos(a)), 16 * std::round(64 * std::sin(a))));
       const double x = along * rim[0].x, y = along * rim[0].y;
       int faces = 0;
-      for (std::size_t i = 0; i < rim.size(); ++i)
-        faces += inside({at(0, 0), rim[i], rim[(i + 1) % rim.size()]}, x, y);
+      for (std::size_t i = 0; i < rim.size(); ++i) faces += inside({at(0, 0), rim[i], rim[(i + 1) % rim.size()]}, x, y);
       // Sectors of more than half a turn would be the other way round.
       double widest = angles.front() + 2 * 3.14159265358979 - angles.back();
       for (std::size_t i = 1; i < angles.size(); ++i) widest = std::max(widest, angles[i] - angles[i - 1]);

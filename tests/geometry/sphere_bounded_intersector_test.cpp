@@ -10,10 +10,11 @@
 #include "geometry/embree_intersector.h"
 #include "geometry/faceted_quadric.h"
 #include "geometry/instance_transform.h"
+#include "geometry/patch_surface.h"
+#include "geometry/ray_batch.h"
 #include "geometry/reference_intersector.h"
 #include "geometry/surface.h"
 #include "geometry/tessellation.h"
-#include "geometry/patch_surface.h"
 #include "tests/geometry/reference_shapes.h"
 #include "tests/geometry/subdivision_cages.h"
 #include "tests/patch_samples.h"
@@ -23,7 +24,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Search = SphereBoundedOptions::Search;
 
 ReferenceHit traced(const ShapeSet& shapes, const Vec3d& from, const Vec3d& direction, double most = kInfinity) {
@@ -52,7 +52,8 @@ TEST(SphereBounded, SpheresFarAwayAndGrazing) {
     EXPECT_LT((hit.normal - normal).length(), 4 * slack / r);
     EXPECT_FALSE(traced(shapes, from, direction, away - r * cosine - slack).hit());
     // From inside the far side is met; behind there is nothing.
-    EXPECT_NEAR(traced(shapes, Vec3d(center) + side * (off * r), direction).distance, r * cosine, 0x1p-48 * (r + 20) / cosine);
+    EXPECT_NEAR(traced(shapes, Vec3d(center) + side * (off * r), direction).distance, r * cosine,
+                0x1p-48 * (r + 20) / cosine);
     EXPECT_FALSE(traced(shapes, from, -direction).hit());
   }
 }
@@ -108,8 +109,8 @@ TEST(SphereBounded, PolygonsAsTheyAre) {
   int inside = 0;
   for (double x = -0.45; x < 6.5; x += 0.1)
     for (double y = -0.45; y < 6.5; y += 0.1) {
-      const bool expected = x > 0 && x < 6 && y > 0 && y < 6 - (x < 3 ? x : 6 - x) / 3 &&
-                            !(x > 2 && x < 4 && y > 2 && y < 4);
+      const bool expected =
+          x > 0 && x < 6 && y > 0 && y < 6 - (x < 3 ? x : 6 - x) / 3 && !(x > 2 && x < 4 && y > 2 && y < 4);
       const Vec3d direction(0.3, -0.2, -0.5);
       const ReferenceHit hit = tracer.nearest(Vec3d(x, y, 1) - direction * 7.0, direction, kInfinity);
       ASSERT_EQ(hit.hit(), expected) << x << " " << y;
@@ -171,8 +172,10 @@ ShapeSet everything(Random& random, bool planes) {
     }
     PolygonMesh triangles;
     for (std::uint32_t i = 0; i < 60; ++i) {
-      if (i % 3 == 0) triangles.positions.push_back(Vec3f(random.in_cube(reach)));
-      else triangles.positions.push_back(triangles.positions.back() + Vec3f(random.in_cube(1)));
+      if (i % 3 == 0)
+        triangles.positions.push_back(Vec3f(random.in_cube(reach)));
+      else
+        triangles.positions.push_back(triangles.positions.back() + Vec3f(random.in_cube(1)));
       triangles.corners.push_back(i);
     }
     shapes.meshes.push_back(polygon_entry(std::move(triangles)));
@@ -376,7 +379,8 @@ TEST(ReferenceIntersector, PutsATracerBehindTheSeam) {
   adapted.occluded(rays, Coherence::coherent, occluded);
   tracer.intersect(rays, Coherence::coherent, same);
   for (std::size_t i = 0; i < rays.size; ++i) {
-    const ReferenceHit hit = tracer.nearest(Vec3d(rays.origin(i)), Vec3d(rays.direction(i)), double(rays.max_distance[i]));
+    const ReferenceHit hit =
+        tracer.nearest(Vec3d(rays.origin(i)), Vec3d(rays.direction(i)), double(rays.max_distance[i]));
     EXPECT_EQ(hits.geometry[i], hit.geometry);
     EXPECT_EQ(same.geometry[i], hit.geometry);
     EXPECT_EQ(occluded[i], hit.hit());

@@ -4,10 +4,10 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-
 #include "geometry/angle.h"
 #include "geometry/faceted_quadric.h"
 #include "geometry/newell.h"
+#include "geometry/ray_batch.h"
 #include "geometry/sphere_bounded_intersector.h"
 #include "tests/geometry/reference_shapes.h"
 #include "tests/geometry/subdivision_cages.h"
@@ -16,8 +16,6 @@ namespace raytree {
 namespace {
 
 using namespace test;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A convex mesh about the origin, symmetric to the three planes of the axes.
 struct ClosedMesh {

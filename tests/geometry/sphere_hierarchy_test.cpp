@@ -7,14 +7,13 @@
 #include <array>
 #include <set>
 
+#include "geometry/ray_batch.h"
 #include "tests/geometry/reference_shapes.h"
 
 namespace raytree {
 namespace {
 
 using test::Random;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(BoundingSphere, HoldsWhatIsInsideAndHardlyMore) {
   Random random(1);
@@ -51,8 +50,8 @@ TEST(BoundingSphere, AboutPointsAndSpheres) {
     const BoundingSphere both = sphere_about(a, b);
     for (const BoundingSphere& part : {a, b})
       EXPECT_LE((part.center - both.center).length() + part.radius, both.radius * (1 + 1e-14));
-    EXPECT_LE(both.radius, ((a.center - b.center).length() + a.radius + b.radius) / 2 * (1 + 1e-12) +
-                               std::max(a.radius, b.radius));
+    EXPECT_LE(both.radius,
+              ((a.center - b.center).length() + a.radius + b.radius) / 2 * (1 + 1e-12) + std::max(a.radius, b.radius));
   }
 }
 
@@ -104,9 +103,8 @@ TEST(SphereHierarchy, StopsWhenToldAndTriesNearSpheresFirst) {
   for (int i = 0; i < 200; ++i) {
     const SphereRay ray(random.in_cube(12), random.direction());
     int visits = 0;
-    const bool any = hierarchy.search(spheres, ray, kInfinity, [&](std::uint32_t, const RayInterval&) {
-      return ++visits > 0;
-    });
+    const bool any =
+        hierarchy.search(spheres, ray, kInfinity, [&](std::uint32_t, const RayInterval&) { return ++visits > 0; });
     EXPECT_EQ(any, visits == 1);
     double limit = kInfinity;
     hierarchy.search(spheres, ray, limit, [&](std::uint32_t, const RayInterval& interval) {

@@ -39,7 +39,8 @@ void expect_pieces_of(const PolygonMesh& mesh, const SubdivisionRules& rules) {
         const SurfaceSample sample = sample_at(*surface, piece.face, piece.face_parameters(s, t));
         const Vec3d off = point_of(piece, s, t) - Vec3d(sample.position);
         const bool divided = piece.along_u.x < (piece.domain == FaceDomain::quad ? 0.5 : 0.25);
-        EXPECT_LT(divided ? std::abs(off.dot(Vec3d(sample.normal))) : off.length(), (divided ? kIrregular : kRegular) * size)
+        EXPECT_LT(divided ? std::abs(off.dot(Vec3d(sample.normal))) : off.length(),
+                  (divided ? kIrregular : kRegular) * size)
             << "face " << piece.face << " at " << piece.face_parameters(s, t).x << " " << piece.face_parameters(s, t).y;
         const PatchDerivatives at = evaluate(piece.patch, s, t);
         EXPECT_GT(at.du.cross(at.dv).dot(Vec3d(sample.normal)), 0);
@@ -80,8 +81,7 @@ TEST(SubdivisionPatches, FollowCreasesCornersHolesAndBoundaries) {
 
 TEST(SubdivisionPatches, CutPolygonsInQuads) {
   PolygonMesh pyramid;
-  for (int i = 0; i < 5; ++i)
-    pyramid.positions.push_back(Vec3f(Vec3d(std::cos(1.2566 * i), 0, -std::sin(1.2566 * i))));
+  for (int i = 0; i < 5; ++i) pyramid.positions.push_back(Vec3f(Vec3d(std::cos(1.2566 * i), 0, -std::sin(1.2566 * i))));
   pyramid.positions.push_back(Vec3f(0, 1, 0));
   for (std::uint32_t i = 0; i < 5; ++i) add_face(pyramid, {i, (i + 1) % 5, 5});
   add_face(pyramid, {4, 3, 2, 1, 0});

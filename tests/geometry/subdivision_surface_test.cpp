@@ -102,7 +102,7 @@ TEST(SubdivisionSurface, AVertexOfTwoFacesMeetsItsLimitMask) {
   fold.positions = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, 1}};
   test::add_face(fold, {4, 0, 2, 1});
   test::add_face(fold, {4, 1, 3, 0});
-  const auto surface = surface_of(fold);
+  const auto surface = limit_surface(fold);
   for (const std::size_t face : {std::size_t(0), std::size_t(1)})
     EXPECT_LE((Vec3d(sample_at(*surface, face, 0, 0).position) - Vec3d(0, 0, 4.0 / 14)).length(), 1e-6);
 }

@@ -16,10 +16,10 @@
 namespace raytree {
 namespace {
 
-enum class Aim { facets, edges, vertices };
+enum class AimedAt { facets, edges, vertices };
 
 /// How many of `count` rays from inside leave the mesh. inside: a point for a target.
-std::size_t escapes(const TriangleMesh& mesh, const EmbreeIntersector& tracer, Aim aim, std::size_t count,
+std::size_t escapes(const TriangleMesh& mesh, const EmbreeIntersector& tracer, AimedAt aim, std::size_t count,
                     const std::function<Vec3d(const Vec3d& target, std::minstd_rand&)>& inside, Coherence coherence) {
   std::minstd_rand random(static_cast<unsigned>(aim) + 17);
   std::uniform_real_distribution<double> unit_interval(0, 1);
@@ -34,9 +34,9 @@ std::size_t escapes(const TriangleMesh& mesh, const EmbreeIntersector& tracer, A
       const Vec3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
       double u = unit_interval(random), v = unit_interval(random);
       if (u + v > 1) u = 1 - u, v = 1 - v;
-      const Vec3d target = aim == Aim::vertices ? a
-                           : aim == Aim::edges  ? a + (b - a) * u
-                                                : a + (b - a) * u + (c - a) * v;
+      const Vec3d target = aim == AimedAt::vertices ? a
+                           : aim == AimedAt::edges  ? a + (b - a) * u
+                                                    : a + (b - a) * u + (c - a) * v;
       const Vec3d origin = inside(target, random);
       rays.push(Vec3f(origin), Vec3f(unit(target - Vec3d(Vec3f(origin)))), std::numeric_limits<float>::infinity());
     }
@@ -64,8 +64,8 @@ void expect_none_escapes(const char* name, const ParametricSurface& surface,
   const EmbreeIntersector tracer(shapes, {});
   const std::size_t count = ray_count();
   for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
-    const auto run = [&](Aim aim) { return escapes(shapes.meshes[0].mesh, tracer, aim, count, inside, coherence); };
-    const std::size_t facets = run(Aim::facets), edges = run(Aim::edges), vertices = run(Aim::vertices);
+    const auto run = [&](AimedAt aim) { return escapes(shapes.meshes[0].mesh, tracer, aim, count, inside, coherence); };
+    const std::size_t facets = run(AimedAt::facets), edges = run(AimedAt::edges), vertices = run(AimedAt::vertices);
     std::printf("%s, %zu triangles, %zu rays each: escaped through facets %zu, edges %zu, vertices %zu\n", name,
                 shapes.meshes[0].mesh.triangle_count(), count, facets, edges, vertices);
     EXPECT_EQ(facets, 0u);

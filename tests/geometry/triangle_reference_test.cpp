@@ -9,26 +9,13 @@
 #include <numbers>
 #include <random>
 
+#include "tests/random.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree {
 namespace {
 
-class Random {
- public:
-  explicit Random(unsigned seed) : generator_(seed) {}
-  double uniform(double least, double most) { return std::uniform_real_distribution<double>(least, most)(generator_); }
-  Vec3d in_box(double half) { return {uniform(-half, half), uniform(-half, half), uniform(-half, half)}; }
-  Vec3d direction() {
-    for (;;) {
-      const Vec3d v = in_box(1);
-      if (v.length() > 0.1 && v.length() < 1) return v.normalized();
-    }
-  }
-
- private:
-  std::mt19937 generator_;
-};
+using test::Random;
 
 MeshEntry globe(double radius, int columns, int rows) {
   const auto polygons = test::globe_mesh(radius, columns, rows);
@@ -54,7 +41,7 @@ ShapeSet everything() {
   Random random(1);
   const auto add_round = [&](BoundedShapes& list, int count) {
     for (int i = 0; i < count; ++i) {
-      const Vec3f p(random.in_box(4)), q(random.in_box(4));
+      const Vec3f p(random.in_cube(4)), q(random.in_cube(4));
       list.spheres.center_radius.push_back({p.x, p.y, p.z, float(random.uniform(0.05, 0.5))});
       list.spheres.shape.push_back(0);
       list.discs.center_radius.push_back({q.x, q.y, q.z, float(random.uniform(0.05, 0.5))});
@@ -71,7 +58,7 @@ ShapeSet everything() {
   shapes.groups.resize(1);
   add_round(shapes.groups[0], 5);
   shapes.groups[0].meshes.push_back(globe(1, 12, 8));
-  for (int i = 0; i < 10; ++i) shapes.instances.push_back(placed(0, random.in_box(5), 0.3, i));
+  for (int i = 0; i < 10; ++i) shapes.instances.push_back(placed(0, random.in_cube(5), 0.3, i));
   return shapes;
 }
 
@@ -87,7 +74,7 @@ TEST(TriangleReference, HierarchyAndLinearSearchAgreeToTheBit) {
   Random random(2);
   int hits = 0, of_instances = 0, differing = 0;
   for (int i = 0; i < 20000; ++i) {
-    Vec3d origin = random.in_box(6), direction = random.direction() * random.uniform(0.5, 2);
+    Vec3d origin = random.in_cube(6), direction = random.direction() * random.uniform(0.5, 2);
     // At vertices, where ties are; along axes, where slabs divide by zero.
     if (i % 4 == 1) direction = Vec3d(shapes.meshes[0].mesh.positions[i % 200]) - origin;
     if (i % 4 == 2) direction = Vec3d(i % 3 == 0, i % 3 == 1, i % 3 == 2) * (i % 8 < 4 ? 1 : -1);
@@ -117,7 +104,7 @@ TEST(TriangleReference, NothingPassesBetweenTriangles) {
     Random random(3);
     int missed = 0;
     for (int i = 0; i < 100000; ++i) {
-      const Vec3d origin = Vec3d(center) + random.in_box(0.4);
+      const Vec3d origin = Vec3d(center) + random.in_cube(0.4);
       const std::size_t corner = static_cast<std::size_t>(random.uniform(0, double(mesh.triangle_count()))) * 3;
       const Vec3d a(mesh.positions[mesh.corners[corner]]), b(mesh.positions[mesh.corners[corner + 1]]);
       const double share = i % 3 == 0 ? 0 : i % 3 == 1 ? 0.5 : random.uniform(0, 1);
@@ -184,7 +171,7 @@ TEST(TriangleReference, InstancesAreWhereTheirMatrixPutsThem) {
   Random random(4);
   int hits = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Vec3d origin = random.in_box(8), direction = (Vec3d(3, 0, 0) + random.in_box(1.2) - origin).normalized();
+    const Vec3d origin = random.in_cube(8), direction = (Vec3d(3, 0, 0) + random.in_cube(1.2) - origin).normalized();
     const ReferenceHit a = inside.nearest(origin, direction, 1e9), b = outside.nearest(origin, direction, 1e9);
     if (a.primitive != b.primitive || !a.hit()) continue;
     ++hits;

@@ -183,7 +183,7 @@ TEST(AdaptiveSampling, ACheckerTowardTheHorizonKeepsItsAreaMean) {
     errors.samples = result.statistics.samples;
     return errors;
   };
-  constexpr Antialiasing kNone{Antialiasing::Method::none, 1}, kGrid{Antialiasing::Method::grid, 3},
+  constexpr Antialiasing kNone{Antialiasing::Method::none, 1}, kSquares{Antialiasing::Method::grid, 3},
       kFine{Antialiasing::Method::grid, 8}, kWhitted{Antialiasing::Method::whitted, 1};
   const AdaptiveSampling usual, forced{0.1, 4, 3};
   const auto measured = [&](const char* name, const Antialiasing& antialias, const AdaptiveSampling& adaptive,
@@ -220,7 +220,7 @@ TEST(AdaptiveSampling, ACheckerTowardTheHorizonKeepsItsAreaMean) {
 
   // One filtered sample a pixel, or nine, tell more than 64 points.
   const Errors fine = measured("grid_8", kFine, usual, false);
-  for (const auto& [name, antialias] : {std::pair{"none", kNone}, {"grid_3", kGrid}}) {
+  for (const auto& [name, antialias] : {std::pair{"none", kNone}, {"grid_3", kSquares}}) {
     const Errors points = measured(name, antialias, usual, false), filtered = measured(name, antialias, usual, true);
     EXPECT_LE(filtered.far, fine.far) << name;
     EXPECT_LE(filtered.near, fine.near) << name;

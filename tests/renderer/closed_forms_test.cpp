@@ -115,13 +115,13 @@ TEST(ClosedForms, ATorusShowsTheAreaOfItsRingAlongItsAxis) {
   camera.position = {0, 10, 0};
   camera.up = {0, 0, 1};
   SceneDescription scene = torus_scene(camera);
-  constexpr int kGrid = 8;
-  scene.render.antialias = {Antialiasing::Method::grid, kGrid};
+  constexpr int kEyes = 8;
+  scene.render.antialias = {Antialiasing::Method::grid, kEyes};
   const RenderResult result = rendered(std::move(scene), {ChannelGroup::alpha});
   const float* const alpha = result.film.plane(ChannelGroup::alpha, 0);
   double sum = 0;
   for (std::size_t i = 0; i < 128u * 128; ++i) sum += alpha[i];
-  const double pixel = 7.0 / 128, cell = pixel / kGrid, area = sum * pixel * pixel;
+  const double pixel = 7.0 / 128, cell = pixel / kEyes, area = sum * pixel * pixel;
   const double exact = kPi * (std::pow(kRing + kTube, 2) - std::pow(kRing - kTube, 2));
   // The border's facets take their sagitta all along it; cells on it count whole or not at all, as if at random: four
   // standard deviations of so many halves.

@@ -197,7 +197,7 @@ TEST(Media, AnEyeInLiquidInGlassKnowsWhereItIs) {
     const Vec3f eye(Vec3d(0, 0, 0.5) - ready.shapes->origin);
     EXPECT_EQ(solids_around(ready, eye, {1, 0, 0}), solids(ready, {0, 1, 2}));
     const RenderResult result = render(ready, {});
-    int compared = 0;
+    int looked_at = 0;
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x) {
         const double pixel = (parallel ? 0.5 : 2 * std::tan(20 * kDegree)) / 32;
@@ -217,10 +217,10 @@ TEST(Media, AnEyeInLiquidInGlassKnowsWhereItIs) {
           d = *next;
         }
         if (!out) continue;
-        ++compared;
+        ++looked_at;
         EXPECT_NEAR(color_at(result.film, x, y).r, std::max(0.0, d.y), 2e-5) << x << " " << y << " " << parallel;
       }
-    EXPECT_GT(compared, 500);
+    EXPECT_GT(looked_at, 500);
   }
 }
 

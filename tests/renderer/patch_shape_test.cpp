@@ -168,16 +168,16 @@ TEST(PatchShape, TheBuiltInTeapotIsThePublishedOne) {
   ASSERT_NE(teapot, scene.shapes.end());
   const std::vector<SurfacePatch> patches = patches_of(std::get<PatchesShape>(teapot->kind));
   EXPECT_EQ(patches.size(), 32u);
-  bool compared = false;
+  bool looked_at = false;
   for (const auto& path : test_data_files("patches")) {
     if (path.filename() != "newell_teapot.bpt") continue;
-    compared = true;
+    looked_at = true;
     Warnings warnings;
     const std::vector<BezierPatch> published = read_patch_file(path.string(), warnings);
     for (std::size_t i = 0; i < 32; ++i)
       EXPECT_EQ(std::get<BezierPatch>(patches[i]).points, published[i].points) << "patch " << i + 1;
   }
-  if (!compared) std::fprintf(stderr, "LEFT OUT: the built-in teapot against the published file\n");
+  if (!looked_at) std::fprintf(stderr, "LEFT OUT: the built-in teapot against the published file\n");
 }
 
 }  // namespace
