@@ -154,16 +154,21 @@ Image marked_image(const ValidationReport& report, std::array<std::vector<std::u
   image.window = {0, 0, report.width, report.height};
   image.color_space = "srgb";
   const char* const names[3] = {"R", "G", "B"};
+  constexpr float kDarker = 0.6f;  // so that marks, three pixels wide, stand out
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(report.width) + static_cast<std::size_t>(x);
+  };
   for (std::size_t c = 0; c < 3; ++c) {
     planes[c].resize(report.gray.size());
-    for (std::size_t i = 0; i < report.gray.size(); ++i) {
-      const std::uint8_t verdict = report.verdicts[i];
-      const bool is_marked = verdict != ValidationReport::kNotCompared && verdict != 0;
-      // Darker, so that marks stand out; what was not compared is darker still.
-      const float share = verdict == ValidationReport::kNotCompared ? 0.35f : 0.6f;
-      const float gray = std::clamp(report.gray[i], 0.0f, 1.0f) * share * 255;
-      planes[c][i] = is_marked ? kColors[verdict][c] : static_cast<std::uint8_t>(std::lround(gray));
-    }
+    for (std::size_t i = 0; i < report.gray.size(); ++i)
+      planes[c][i] = static_cast<std::uint8_t>(std::lround(std::clamp(report.gray[i], 0.0f, 1.0f) * kDarker * 255));
+    for (int y = 0; y < report.height; ++y)
+      for (int x = 0; x < report.width; ++x)
+        if (const std::uint8_t verdict = report.verdicts[at(x, y)];
+            verdict != ValidationReport::kNotCompared && verdict != 0)
+          for (int v = std::max(0, y - 1); v <= std::min(report.height - 1, y + 1); ++v)
+            for (int u = std::max(0, x - 1); u <= std::min(report.width - 1, x + 1); ++u)
+              planes[c][at(u, v)] = kColors[verdict][c];
     image.planes.push_back({names[c], PixelType::uint8, PixelType::uint8, planes[c].data()});
   }
   return image;
