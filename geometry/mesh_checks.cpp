@@ -13,7 +13,7 @@
 namespace raytree {
 namespace {
 
-using Range = tbb::blocked_range<std::size_t>;
+using IndexRange = tbb::blocked_range<std::size_t>;
 constexpr std::size_t kGrain = 65536;
 
 bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
@@ -21,8 +21,8 @@ bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y)
 template <class Predicate>
 bool any_of_parallel(std::size_t count, const Predicate& predicate) {
   return tbb::parallel_reduce(
-      Range(0, count, kGrain), false,
-      [&](const Range& range, bool found) {
+      IndexRange(0, count, kGrain), false,
+      [&](const IndexRange& range, bool found) {
         for (std::size_t i = range.begin(); i != range.end() && !found; ++i) found = predicate(i);
         return found;
       },

@@ -12,7 +12,7 @@ namespace raytree {
 namespace {
 
 constexpr int kDepth = 5;
-constexpr int kSize = 512;
+constexpr int kPictureSize = 512;
 /// The light that it carries over five levels is below a display's, and still no denormal.
 constexpr float kLeastReflection = 1e-6f;
 
@@ -59,7 +59,8 @@ std::set<std::string> two_sided_materials(const SceneDescription& scene) {
 
 std::optional<SpdCounts> published_spd_counts(const SceneDescription& scene) {
   // The standard render has made the image one larger.
-  if (scene.image.width - kSize > 1 || scene.image.height != scene.image.width || scene.image.width < kSize)
+  if (scene.image.width - kPictureSize > 1 || scene.image.height != scene.image.width ||
+      scene.image.width < kPictureSize)
     return std::nullopt;
   const std::filesystem::path path(scene.name);
   for (const SpdEntry& entry : spd_databases())
