@@ -86,7 +86,8 @@ Errors errors_on_sphere(PolygonMesh mesh, NormalMethod method) {
   return errors;
 }
 
-// Row 12. Gouraud 1971, p. 30: the methods can hardly be told apart but with unbalanced polygons (his figure 17). Printed.
+// Row 12. Gouraud 1971, p. 30: the methods can hardly be told apart but with unbalanced polygons (his figure 17).
+// Printed.
 TEST(NormalMethods, DifferVisiblyOnUnbalancedFacetsOnly) {
   for (const NormalMethod method : kMethods) {
     const Errors even = errors_on_sphere(sphere(16, 12, 1), method);
