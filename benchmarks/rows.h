@@ -32,6 +32,7 @@ std::vector<Figure> measure_instances(const MeasureContext& context);
 std::vector<Figure> measure_types(const MeasureContext& context);
 std::vector<Figure> measure_curved(const MeasureContext& context);
 std::vector<Figure> measure_spd(const MeasureContext& context);
+std::vector<Figure> measure_naive(const MeasureContext& context);
 
 struct Row {
   const char* name;
@@ -53,6 +54,7 @@ inline constexpr Row kRows[] = {
     {"povray", measure_povray},
     {"povray-masks", measure_povray_masks},
     {"spd", measure_spd},
+    {"naive", measure_naive},
 };
 
 /// What `large` compares with, measured in a process of its own (see large.cpp): generates the terrain, builds over it
