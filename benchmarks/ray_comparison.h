@@ -28,7 +28,7 @@ inline constexpr std::array<const char*, kRayVerdictCount> kRayVerdictNames = {
 
 /// As it was asked of the fast tracer.
 struct ComparedRay {
-  Vec3f origin, direction;  ///< scene space
+  Vec3f origin{0}, direction{0};  ///< scene space
   float max_distance = 0;
   bool occlusion = false;
 };

@@ -19,11 +19,11 @@ struct TreeRay {
   ComparedRay ray;
   RayKind kind = RayKind::primary;
   std::uint16_t sample = 0;
-  bool follows_shadow = false;  ///< asks for the nearest hit on the way to a light
-  bool occluded = false;        ///< the fast tracer's answer
-  bool is_taken = false;        ///< by the second tree
-  Hit hit;                      ///< the fast tracer's answer
-  Vec3f position, normal;       ///< of the surface that the fast tracer hit
+  bool follows_shadow = false;   ///< asks for the nearest hit on the way to a light
+  bool occluded = false;         ///< the fast tracer's answer
+  bool is_taken = false;         ///< by the second tree
+  Hit hit;                       ///< the fast tracer's answer
+  Vec3f position{0}, normal{0};  ///< of the surface that the fast tracer hit
   ReferenceHit found;
   RayComparison comparison;
 };
