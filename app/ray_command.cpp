@@ -15,6 +15,7 @@
 #include "app/truth.h"
 #include "benchmarks/validation.h"
 #include "geometry/surface.h"
+#include "geometry/triangle_reference.h"
 
 namespace raytree::app {
 namespace {
@@ -112,7 +113,10 @@ std::string truth_text(const Scene& scene, const ReferenceHit& hit) {
 
 std::string answers(const Scene& scene, const ComparedRay& ray, const std::string& truth_name) {
   const std::unique_ptr<const ReferenceTracer> truth = make_truth(truth_name, scene, nullptr);
-  const RayJudge judge(*scene.shapes, *scene.intersector, *scene.shapes, *truth, facet_tolerance(truth_name, scene));
+  const TriangleReference facets(*scene.shapes);
+  const RayJudge of_facets(*scene.shapes, *scene.intersector, *scene.shapes, facets);
+  const RayJudge judge(*scene.shapes, *scene.intersector, *scene.shapes, *truth, facet_tolerance(truth_name, scene),
+                       truth_name == kSphereTruth ? &of_facets : nullptr);
   RayBatch rays(1);
   HitBatch hits(1);
   rays.push(ray.origin, ray.direction, ray.max_distance);

@@ -82,41 +82,37 @@ RayComparison RayJudge::nearest(const ComparedRay& ray, const Hit& hit, const Re
   return result.verdict == RayVerdict::defect ? deviating(ray, hit, found, result) : result;
 }
 
-/// What the facets do not explain, where the truth finds hits off them: that they lie off what they stand for. A ray
-/// that is moved by as much must then find what the fast tracer found.
+/// What rounding does not explain, where the truth knows what facets stand for. The ray is judged in two steps: the
+/// fast tracer against the facets in double, which only rounding may excuse; and the facets against what they stand
+/// for, which must lie as near each other as was asked, both at what the facets and at what the truth let the ray meet.
 RayComparison RayJudge::deviating(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found,
                                   const RayComparison& otherwise) const {
+  if (of_facets_ == nullptr) return otherwise;
+  const ReferenceHit on_facets = of_facets_->ask_truth(ray);
+  const RayComparison rounding = of_facets_->nearest(ray, hit, on_facets);
+  if (rounding.verdict != RayVerdict::agree) return rounding;
   const Vec3d origin(ray.origin), direction(ray.direction);
-  const bool hits = hit.geometry != kNoGeometry;
-  SurfaceDeviation of_hit, of_found;
-  Vec3d normal(0);
-  if (hits) {
-    of_hit = surface_deviation(truth_shapes_, tolerance_, id_of(hit), kNoFace, origin + direction * hit.distance);
-    normal = Vec3d(surface_at(shapes_, ray.origin, ray.direction, hit, false).geometric_normal);
+  SurfaceDeviation of_facet, of_found;
+  if (on_facets.hit()) {
+    of_facet = surface_deviation(truth_shapes_, tolerance_, id_of(on_facets), kNoFace,
+                                 origin + direction * on_facets.distance);
+    if (of_facet.distance > 0 && !facet_stands_for_surface(truth_shapes_, truth_, id_of(on_facets), on_facets.u,
+                                                           on_facets.v, of_facet.distance, nullptr))
+      return otherwise;
   }
-  if (found.hit())
-    of_found =
-        surface_deviation(truth_shapes_, tolerance_, id_of(found), found.face, origin + direction * found.distance);
-  const double off = std::max(of_hit.distance, of_found.distance);
+  if (found.hit()) {
+    const Vec3d place = origin + direction * found.distance;
+    of_found = surface_deviation(truth_shapes_, tolerance_, id_of(found), found.face, place);
+    if (of_found.distance > 0 &&
+        !facet_stands_for_surface(truth_shapes_, truth_, id_of(found), found.u, found.v, of_found.distance, &place))
+      return otherwise;
+  }
+  const double off = std::max(of_facet.distance, of_found.distance);
   if (!(off > 0)) return otherwise;
   RayComparison excused = otherwise;
-  excused.verdict = of_hit.curved || of_found.curved ? RayVerdict::tessellation : RayVerdict::nonplanar;
+  excused.verdict = of_facet.curved || of_found.curved ? RayVerdict::tessellation : RayVerdict::nonplanar;
   excused.edge_error = off;
-  // Along the ray what lies off by so much is met earlier or later by that over the cosine.
-  const auto is_alike = [&](const ReferenceHit& other) {
-    if (!hits || !other.hit()) return hits == other.hit();
-    if (other.geometry != hit.geometry || other.instance != hit.instance) return false;
-    const double cosine = std::min(std::abs(normal.dot(direction)), std::abs(other.normal.dot(direction)));
-    return std::abs(other.distance - hit.distance) * cosine <= 2 * off + otherwise.distance_error * cosine;
-  };
-  if (is_alike(found)) return excused;
-  const Vec3d u = (std::abs(direction.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)).cross(direction).normalized();
-  const Vec3d v = direction.cross(u), diagonal = (u + v) * std::sqrt(0.5), other_diagonal = (u - v) * std::sqrt(0.5);
-  for (const double share : {0.0625, 0.125, 0.25, 0.5, 1.0})
-    for (const Vec3d& way : {u, -u, v, -v, diagonal, -diagonal, other_diagonal, -other_diagonal, found.normal,
-                             -found.normal, normal, -normal})
-      if (is_alike(truth_.nearest(origin + way * (off * share), direction, ray.max_distance))) return excused;
-  return otherwise;
+  return excused;
 }
 
 RayComparison RayJudge::nearest_on_facets(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found) const {

@@ -45,10 +45,16 @@ struct RayComparison {
 /// What the two tracers are told of: `shapes` and `truth_shapes` are the same unless a test makes them differ.
 class RayJudge {
  public:
-  /// All must outlive it.
+  /// All must outlive it. `of_facets`, for a truth that knows what facets stand for: a judge of the same rays whose
+  /// truth has the facets.
   RayJudge(const ShapeSet& shapes, const RayIntersector& tracer, const ShapeSet& truth_shapes,
-           const ReferenceTracer& truth, const FacetTolerance& tolerance = {})
-      : shapes_(shapes), tracer_(tracer), truth_shapes_(truth_shapes), truth_(truth), tolerance_(tolerance) {}
+           const ReferenceTracer& truth, const FacetTolerance& tolerance = {}, const RayJudge* of_facets = nullptr)
+      : shapes_(shapes),
+        tracer_(tracer),
+        truth_shapes_(truth_shapes),
+        truth_(truth),
+        tolerance_(tolerance),
+        of_facets_(of_facets) {}
 
   /// Compares nearest hits. `found`: the truth's.
   RayComparison nearest(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found) const;
@@ -72,6 +78,7 @@ class RayJudge {
   const ShapeSet& truth_shapes_;
   const ReferenceTracer& truth_;
   FacetTolerance tolerance_;
+  const RayJudge* of_facets_;
 };
 
 }  // namespace raytree::benchmarks

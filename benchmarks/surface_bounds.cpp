@@ -11,7 +11,6 @@
 namespace raytree::benchmarks {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kUnit = 0x1p-24;  ///< of single precision
 /// What is reckoned in double beside Embree takes directions for unit whose length is off by up to 2^-22: the square of
 /// that is left.

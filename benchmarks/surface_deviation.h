@@ -23,4 +23,11 @@ struct SurfaceDeviation {
 SurfaceDeviation surface_deviation(const ShapeSet& shapes, const FacetTolerance& tolerance, const SurfaceId& id,
                                    std::uint32_t face, const Vec3d& point);
 
+/// Whether a mesh's triangle and what it stands for lie as near each other as the deviation allows, at the point of
+/// weights (1 - u - v, u, v): across the surface by `deviation`, and along it by the triangle's own size besides, since
+/// pieces of a limit surface have parameters that slide. `place`: the surface there (scene space), where it is known;
+/// else it is evaluated, or, on n-gons of cages, asked of the truth along the triangle's normal.
+bool facet_stands_for_surface(const ShapeSet& shapes, const ReferenceTracer& truth, const SurfaceId& id, double u,
+                              double v, double deviation, const Vec3d* place);
+
 }  // namespace raytree::benchmarks

@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// A cube's limit surface, and a sphere.
-const char* const kScene = R"({
+const char* const kBlobScene = R"({
   "raytree": 1,
   "cameras": {"main": {"position": [0, 0, 8], "target": [0, 0, 0], "field_of_view": 30}},
   "image": {"width": 100, "height": 100},
@@ -26,7 +26,7 @@ const char* const kScene = R"({
 struct SceneFolder {
   TemporaryFolder folder;
   std::string scene = folder.path("s.json");
-  SceneFolder() { write_text(scene, kScene); }
+  SceneFolder() { write_text(scene, kBlobScene); }
 
   Json info(const std::vector<std::string>& flags) const {
     const ProgramResult result = run_program(with({"info", scene, "--json"}, flags));
