@@ -75,7 +75,8 @@ std::optional<Vec3d> limit_point(const MeshSource& source, std::uint32_t triangl
 bool facet_stands_for_surface(const ShapeSet& shapes, const ReferenceTracer& truth, const SurfaceId& id, double u,
                               double v, double deviation, const Vec3d* place) {
   const PlacedMesh mesh(shapes, id);
-  if (mesh.entry == nullptr) return true;
+  // A polygon's triangles lie no further from its plane than its corners do, which is the deviation.
+  if (mesh.entry == nullptr || !mesh.entry->source->curved()) return true;
   const MeshSource& source = *mesh.entry->source;
   const TriangleMesh& triangles = mesh.entry->mesh;
   Vec3d corner[3];
@@ -86,7 +87,7 @@ bool facet_stands_for_surface(const ShapeSet& shapes, const ReferenceTracer& tru
   Vec3d surface = facet;
   if (place != nullptr) {
     surface = *place;
-  } else if (source.curved()) {
+  } else {
     const std::optional<Vec3d> limit = limit_point(source, id.primitive, u, v);
     if (!limit) {
       const ReferenceHit across = truth.nearest(facet + normal * deviation, -normal, 2 * deviation);
