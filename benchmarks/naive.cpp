@@ -13,7 +13,7 @@ namespace {
 
 using Search = SphereBoundedOptions::Search;
 
-constexpr int kWidth = 160, kHeight = 120;
+constexpr int kNaiveWidth = 160, kNaiveHeight = 120;
 constexpr double kSimpleShare = 75, kComplexShare = 95;  // percent
 
 struct NaiveScene {
@@ -24,7 +24,7 @@ struct NaiveScene {
 };
 
 SceneDescription small(SceneDescription scene) {
-  scene.image = {kWidth, kHeight};
+  scene.image = {kNaiveWidth, kNaiveHeight};
   scene.render.antialias = {Antialiasing::Method::none, 1};
   return scene;
 }
@@ -95,7 +95,7 @@ std::vector<Figure> measure_naive(const MeasureContext& context) {
       Figure ratio;
       ratio.row = "naive";
       ratio.what = fmt::format("time of bounding spheres{} / Embree's, {}, {}x{}, 1 thread",
-                               linear ? " tried one by one" : " in a hierarchy", one.text, kWidth, kHeight);
+                               linear ? " tried one by one" : " in a hierarchy", one.text, kNaiveWidth, kNaiveHeight);
       ratio.measured = pairs.ratio;
       ratio.note =
           fmt::format("{} rays a second against {}", speed_text(naive_statistics), speed_text(fast_statistics));
