@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "geometry/mesh_checks.h"
+#include "geometry/obj_statements.h"
 #include "geometry/obj_tags.h"
 #include "geometry/text_scanning.h"
 
@@ -19,95 +20,6 @@ namespace raytree {
 namespace {
 
 using namespace text;
-
-enum class Statement {
-  none,  // blank or comment
-  position,
-  normal,
-  texture_coordinates,
-  face,
-  group,
-  material,
-  silent,  // concerns other programs or the next reader: smoothing groups and display hints
-  library,
-  subdivision_tag,
-  line_or_point,
-  free_form,
-  unknown
-};
-
-/// The statement's kind by its first word; `p` moves behind that word.
-Statement classify(const char*& p, const char* end) {
-  p = skip_blanks(p, end);
-  if (p == end || *p == '#') return Statement::none;
-  // The words that fill files, before any comparison of strings.
-  const auto word_has = [&](std::ptrdiff_t letters) {
-    return end - p == letters || (end - p > letters && (is_blank(p[letters]) || p[letters] == '#'));
-  };
-  if (*p == 'f' && word_has(1)) return p += 1, Statement::face;
-  if (*p == 'v') {
-    if (word_has(1)) return p += 1, Statement::position;
-    if (word_has(2) && p[1] == 'n') return p += 2, Statement::normal;
-    if (word_has(2) && p[1] == 't') return p += 2, Statement::texture_coordinates;
-  }
-  const char* word_end = p;
-  while (word_end != end && !is_space(*word_end) && *word_end != '#') ++word_end;
-  const std::string_view word(p, static_cast<std::size_t>(word_end - p));
-  p = word_end;
-  if (word == "g" || word == "o") return Statement::group;
-  if (word == "usemtl") return Statement::material;
-  if (word == "mtllib") return Statement::library;
-  if (word == "t") return Statement::subdivision_tag;
-  if (word == "l" || word == "p") return Statement::line_or_point;
-  for (const std::string_view other : {"s", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib",
-                                       "shadow_obj", "trace_obj", "ctech", "stech", "call", "csh"})
-    if (word == other) return Statement::silent;
-  for (const std::string_view other : {"vp",   "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim",
-                                       "hole", "scrv",   "sp",  "end",  "con",  "bzp",  "bsp",   "cdc",  "cdp",  "res"})
-    if (word == other) return Statement::free_form;
-  return Statement::unknown;
-}
-
-/// Calls statement(kind, begin, end, source) for each logical line; [begin, end) follows the first word, `source` is
-/// the place in the text for messages. Continued lines are joined in a scratch string. Stops when it returns false.
-template <class Function>
-void for_each_statement(const char* p, const char* const end, char newline, Function&& statement) {
-  std::string joined;
-  while (p != end) {
-    const char* line_end = static_cast<const char*>(std::memchr(p, newline, static_cast<std::size_t>(end - p)));
-    const char* next = line_end ? line_end + 1 : end;
-    if (!line_end) line_end = end;
-    const char* begin = p;
-    const char* const source = p;
-    const auto continued = [](const char* from, const char* to) {
-      while (to > from && to[-1] == '\r') --to;
-      return to > from && to[-1] == '\\';
-    };
-    if (continued(p, line_end) && *skip_blanks(p, line_end) != '#') {
-      joined.clear();
-      for (;;) {
-        const char* to = line_end;
-        const bool more = continued(p, to);
-        if (more) {
-          while (to[-1] == '\r') --to;
-          --to;
-        }
-        joined.append(p, to);
-        joined += ' ';
-        p = next;
-        if (!more || p == end) break;
-        line_end = static_cast<const char*>(std::memchr(p, newline, static_cast<std::size_t>(end - p)));
-        next = line_end ? line_end + 1 : end;
-        if (!line_end) line_end = end;
-      }
-      begin = joined.data();
-      line_end = joined.data() + joined.size();
-    }
-    const Statement kind = classify(begin, line_end);
-    if (kind != Statement::none && !statement(kind, begin, line_end, source)) return;
-    p = next;
-  }
-}
 
 struct Counts {
   std::size_t positions = 0, normals = 0, texture_coordinates = 0, faces = 0, corners = 0;
@@ -207,8 +119,8 @@ class ObjParser {
     join_libraries();
     join_tags();
     join_warnings();
-    const MeshLocator locate{[this](std::size_t i) { return locate_statement(Statement::position, i); },
-                             [this](std::size_t i) { return locate_statement(Statement::face, i); }};
+    const MeshLocator locate{[this](std::size_t i) { return locate_statement(ObjStatement::position, i); },
+                             [this](std::size_t i) { return locate_statement(ObjStatement::face, i); }};
     findings_ = {};
     complete_corners(mesh_, locate, warnings_);
     settle_mesh(mesh_, name_, locate, warnings_);
@@ -226,18 +138,18 @@ class ObjParser {
 
   Counts count_chunk(std::size_t chunk) const {
     Counts counts;
-    for_each_statement(borders_[chunk], borders_[chunk + 1], newline_,
-                       [&](Statement kind, const char* p, const char* end, const char*) {
-                         if (kind == Statement::position)
-                           ++counts.positions;
-                         else if (kind == Statement::normal)
-                           ++counts.normals;
-                         else if (kind == Statement::texture_coordinates)
-                           ++counts.texture_coordinates;
-                         else if (kind == Statement::face)
-                           count_face(p, end, counts);
-                         return true;
-                       });
+    for_each_obj_statement(borders_[chunk], borders_[chunk + 1], newline_,
+                           [&](ObjStatement kind, const char* p, const char* end, const char*) {
+                             if (kind == ObjStatement::position)
+                               ++counts.positions;
+                             else if (kind == ObjStatement::normal)
+                               ++counts.normals;
+                             else if (kind == ObjStatement::texture_coordinates)
+                               ++counts.texture_coordinates;
+                             else if (kind == ObjStatement::face)
+                               count_face(p, end, counts);
+                             return true;
+                           });
     return counts;
   }
 
@@ -358,72 +270,72 @@ class ObjParser {
     Findings& found = findings_[chunk];
     Counts at = starts_[chunk];
     bool names_changed = false;
-    for_each_statement(borders_[chunk], borders_[chunk + 1], newline_,
-                       [&](Statement kind, const char* p, const char* end, const char* source) {
-                         bool good = true;
-                         switch (kind) {
-                           case Statement::position:
-                             good = parse_position(p, end, mesh_.positions[at.positions++], found, source);
-                             break;
-                           case Statement::normal:
-                             if (totals_.names_normals) {
-                               double v[3];
-                               good = scan_numbers(p, end, v, 3, 3, found.error) != nullptr;
-                               if (good)
-                                 mesh_.normals[at.normals] = Vec3f(static_cast<float>(v[0]), static_cast<float>(v[1]),
-                                                                   static_cast<float>(v[2]));
+    for_each_obj_statement(borders_[chunk], borders_[chunk + 1], newline_,
+                           [&](ObjStatement kind, const char* p, const char* end, const char* source) {
+                             bool good = true;
+                             switch (kind) {
+                               case ObjStatement::position:
+                                 good = parse_position(p, end, mesh_.positions[at.positions++], found, source);
+                                 break;
+                               case ObjStatement::normal:
+                                 if (totals_.names_normals) {
+                                   double v[3];
+                                   good = scan_numbers(p, end, v, 3, 3, found.error) != nullptr;
+                                   if (good)
+                                     mesh_.normals[at.normals] = Vec3f(
+                                         static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
+                                 }
+                                 ++at.normals;
+                                 break;
+                               case ObjStatement::texture_coordinates:
+                                 if (totals_.names_texture) {
+                                   double v[2] = {0, 0};
+                                   good = scan_numbers(p, end, v, 2, 1, found.error) != nullptr;
+                                   if (good)
+                                     mesh_.texture_coordinates[at.texture_coordinates] =
+                                         Vec2f(static_cast<float>(v[0]), static_cast<float>(v[1]));
+                                 }
+                                 ++at.texture_coordinates;
+                                 break;
+                               case ObjStatement::face:
+                                 if (names_changed)
+                                   found.changes.push_back({at.faces, found.last_name, found.last_material});
+                                 names_changed = false;
+                                 good = parse_face(p, end, at, found.error);
+                                 break;
+                               case ObjStatement::group:
+                                 found.last_name = source;
+                                 names_changed = true;
+                                 break;
+                               case ObjStatement::material:
+                                 found.last_material = source;
+                                 names_changed = true;
+                                 break;
+                               case ObjStatement::library:
+                                 if (found.libraries.size() < 16 * kMaxLibraries)  // names may repeat
+                                   found.libraries.push_back(source);
+                                 else
+                                   found.libraries_dropped.add(source);
+                                 break;
+                               case ObjStatement::subdivision_tag:
+                                 good = parse_tag(p, end, found, source);
+                                 break;
+                               case ObjStatement::line_or_point:
+                                 found.line_or_point.add(source);
+                                 break;
+                               case ObjStatement::free_form:
+                                 found.free_form.add(source);
+                                 break;
+                               case ObjStatement::unknown:
+                                 found.unknown.add(source);
+                                 break;
+                               case ObjStatement::silent:
+                               case ObjStatement::none:
+                                 break;
                              }
-                             ++at.normals;
-                             break;
-                           case Statement::texture_coordinates:
-                             if (totals_.names_texture) {
-                               double v[2] = {0, 0};
-                               good = scan_numbers(p, end, v, 2, 1, found.error) != nullptr;
-                               if (good)
-                                 mesh_.texture_coordinates[at.texture_coordinates] =
-                                     Vec2f(static_cast<float>(v[0]), static_cast<float>(v[1]));
-                             }
-                             ++at.texture_coordinates;
-                             break;
-                           case Statement::face:
-                             if (names_changed)
-                               found.changes.push_back({at.faces, found.last_name, found.last_material});
-                             names_changed = false;
-                             good = parse_face(p, end, at, found.error);
-                             break;
-                           case Statement::group:
-                             found.last_name = source;
-                             names_changed = true;
-                             break;
-                           case Statement::material:
-                             found.last_material = source;
-                             names_changed = true;
-                             break;
-                           case Statement::library:
-                             if (found.libraries.size() < 16 * kMaxLibraries)  // names may repeat
-                               found.libraries.push_back(source);
-                             else
-                               found.libraries_dropped.add(source);
-                             break;
-                           case Statement::subdivision_tag:
-                             good = parse_tag(p, end, found, source);
-                             break;
-                           case Statement::line_or_point:
-                             found.line_or_point.add(source);
-                             break;
-                           case Statement::free_form:
-                             found.free_form.add(source);
-                             break;
-                           case Statement::unknown:
-                             found.unknown.add(source);
-                             break;
-                           case Statement::silent:
-                           case Statement::none:
-                             break;
-                         }
-                         if (!good) found.error_place = source;
-                         return good;
-                       });
+                             if (!good) found.error_place = source;
+                             return good;
+                           });
   }
 
   void report_first_error() const {
@@ -440,11 +352,11 @@ class ObjParser {
     tbb::parallel_for(std::size_t(0), findings_.size(), [&](std::size_t chunk) {
       std::size_t position = starts_[chunk].positions;
       Findings ignored;
-      for_each_statement(borders_[chunk], borders_[chunk + 1], newline_,
-                         [&](Statement kind, const char* p, const char* end, const char* source) {
-                           return kind != Statement::position ||
-                                  parse_position(p, end, mesh_.positions[position++], ignored, source);
-                         });
+      for_each_obj_statement(borders_[chunk], borders_[chunk + 1], newline_,
+                             [&](ObjStatement kind, const char* p, const char* end, const char* source) {
+                               return kind != ObjStatement::position ||
+                                      parse_position(p, end, mesh_.positions[position++], ignored, source);
+                             });
     });
   }
 
@@ -454,13 +366,13 @@ class ObjParser {
     constexpr std::ptrdiff_t kMaxName = 255;
     std::string result;
     if (!source) return result;
-    for_each_statement(source, text_.data() + text_.size(), newline_,
-                       [&](Statement, const char* p, const char* end, const char*) {
-                         p = skip_blanks(p, end);
-                         while (end > p && is_blank(end[-1])) --end;
-                         result.assign(p, std::min(end - p, kMaxName) + p);
-                         return false;
-                       });
+    for_each_obj_statement(source, text_.data() + text_.size(), newline_,
+                           [&](ObjStatement, const char* p, const char* end, const char*) {
+                             p = skip_blanks(p, end);
+                             while (end > p && is_blank(end[-1])) --end;
+                             result.assign(p, std::min(end - p, kMaxName) + p);
+                             return false;
+                           });
     return result;
   }
 
@@ -561,24 +473,24 @@ class ObjParser {
          "vertices with more than three components, of which the others (weight or color) are "
          "dropped");
     if (!totals_.names_normals && totals_.normals > 0)
-      warnings_.push_back({locate_statement(Statement::normal, 0), "normals that no face uses dropped",
+      warnings_.push_back({locate_statement(ObjStatement::normal, 0), "normals that no face uses dropped",
                            static_cast<std::int64_t>(totals_.normals)});
     if (!totals_.names_texture && totals_.texture_coordinates > 0)
-      warnings_.push_back({locate_statement(Statement::texture_coordinates, 0),
+      warnings_.push_back({locate_statement(ObjStatement::texture_coordinates, 0),
                            "texture coordinates that no face uses dropped",
                            static_cast<std::int64_t>(totals_.texture_coordinates)});
   }
 
   SourceLocation location(const char* place) const { return {name_, line_number(text_, place, newline_), {}}; }
 
-  SourceLocation locate_statement(Statement wanted, std::size_t number) const {
+  SourceLocation locate_statement(ObjStatement wanted, std::size_t number) const {
     SourceLocation result{name_, 0, {}};
-    for_each_statement(text_.data(), text_.data() + text_.size(), newline_,
-                       [&](Statement kind, const char*, const char*, const char* source) {
-                         if (kind != wanted || number-- != 0) return true;
-                         result = location(source);
-                         return false;
-                       });
+    for_each_obj_statement(text_.data(), text_.data() + text_.size(), newline_,
+                           [&](ObjStatement kind, const char*, const char*, const char* source) {
+                             if (kind != wanted || number-- != 0) return true;
+                             result = location(source);
+                             return false;
+                           });
     return result;
   }
 
