@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/stopwatch.h"
 #include "geometry/surface.h"
 
 namespace raytree::benchmarks {
@@ -105,6 +104,18 @@ void TreeTracer::note(TreeLog& log, const RayBatch& rays, std::size_t i, TreeRay
   log.rays.push_back(ray);
 }
 
+template <class Describe>
+void TreeTracer::record(TreeLog& log, const RayBatch& rays, Clock::time_point start, Describe&& describe) const {
+  log.fast.seconds += seconds_since(start);
+  log.fast.rays += rays.size;
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    if (!log.chosen[rays.sample[i]]) continue;
+    TreeRay ray;
+    describe(i, ray);
+    note(log, rays, i, ray);
+  }
+}
+
 void TreeTracer::intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept {
   TreeLog* const log = current_log;
   const auto start = Clock::now();
@@ -112,18 +123,13 @@ void TreeTracer::intersect(const RayBatch& rays, Coherence coherence, HitBatch& 
   if (log == nullptr || log->mode == TreeLog::Mode::off || rays.sample == nullptr) return;
   const bool follows_shadow = coherence == Coherence::incoherent;
   if (log->mode == TreeLog::Mode::record) {
-    log->fast.seconds += seconds_since(start);
-    log->fast.rays += rays.size;
-    for (std::size_t i = 0; i < rays.size; ++i) {
-      if (!log->chosen[rays.sample[i]]) continue;
-      TreeRay ray;
+    record(*log, rays, start, [&](std::size_t i, TreeRay& ray) {
       ray.hit = hits[i];
       ray.follows_shadow = follows_shadow;
       ray.kind = follows_shadow                     ? RayKind::shadow
                  : coherence == Coherence::coherent ? RayKind::primary
                                                     : child_kind(*log, rays.sample[i], rays.origin(i));
-      note(*log, rays, i, ray);
-    }
+    });
     return;
   }
   hits.begin_instances();
@@ -149,16 +155,11 @@ void TreeTracer::occluded(const RayBatch& rays, Coherence coherence, std::uint8_
   tracer_.occluded(rays, coherence, occluded);
   if (log == nullptr || log->mode == TreeLog::Mode::off || rays.sample == nullptr) return;
   if (log->mode == TreeLog::Mode::record) {
-    log->fast.seconds += seconds_since(start);
-    log->fast.rays += rays.size;
-    for (std::size_t i = 0; i < rays.size; ++i) {
-      if (!log->chosen[rays.sample[i]]) continue;
-      TreeRay ray;
+    record(*log, rays, start, [&](std::size_t i, TreeRay& ray) {
       ray.kind = RayKind::shadow;
       ray.ray.occlusion = true;
       ray.occluded = occluded[i] != 0;
-      note(*log, rays, i, ray);
-    }
+    });
     return;
   }
   for (std::size_t i = 0; i < rays.size; ++i) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "benchmarks/ray_comparison.h"
+#include "geometry/stopwatch.h"
 #include "renderer/ray_tree.h"
 #include "renderer/render.h"
 
@@ -63,6 +64,9 @@ class TreeTracer final : public RayIntersector {
   std::size_t peak_memory_bytes() const noexcept override { return tracer_.peak_memory_bytes(); }
 
  private:
+  /// Notes the batch that was traced since `start`; describe(i, ray) says what it was and came to.
+  template <class Describe>
+  void record(TreeLog& log, const RayBatch& rays, Clock::time_point start, Describe&& describe) const;
   void note(TreeLog& log, const RayBatch& rays, std::size_t i, TreeRay ray) const;
 
   const ShapeSet& shapes_;
