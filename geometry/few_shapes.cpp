@@ -8,9 +8,10 @@ namespace {
 constexpr std::size_t kBlockRays = 8;  ///< rays that are looked at together, one single-precision register of them
 static_assert(kBatchPadding % kBlockRays == 0, "the last block reads into the padding");
 
-/// Half of what is added to a ball's radius, as a share of the distance from the ray's origin to its center: rounding
-/// of the ray's closest point in single precision, at most 8 units of 2^-24 for the point itself and 4 for a direction
-/// that is unit to 2^-22 only. That distance is taken by its 1-norm, which is no less.
+/// What the squared distance of a ray from a ball's center may be off by in single precision, as a share of the squared
+/// distance D of its origin from there. With u = 2^-24 the center about the origin is off by 2 u per component, its
+/// square by 4 u + 3 u D, the part along the ray, squared, by 2 (2 u + 3 u) D, the difference by u D; a direction that
+/// is unit to 2^-22 only adds 2^-21 D: less than 2^-19 D in all.
 constexpr float kBallSlack = 0x1p-19f;
 
 /// Whether any of the block's rays may meet the ball; never false for a ray that does, whatever its range. What lies in
@@ -18,14 +19,13 @@ constexpr float kBallSlack = 0x1p-19f;
 inline bool may_meet(const Imath::V4f& ball, const RayBatch& rays, std::size_t first) {
   const float *ox = rays.origin_x + first, *oy = rays.origin_y + first, *oz = rays.origin_z + first;
   const float *dx = rays.direction_x + first, *dy = rays.direction_y + first, *dz = rays.direction_z + first;
+  const float reach = ball.w * ball.w * (1 + kBallSlack);
   int may = 0;
   for (std::size_t i = 0; i < kBlockRays; ++i) {
     const float x = ball.x - ox[i], y = ball.y - oy[i], z = ball.z - oz[i];
-    const float along = x * dx[i] + y * dy[i] + z * dz[i];
-    const float cx = dx[i] * along - x, cy = dy[i] * along - y, cz = dz[i] * along - z;
-    const float reach = ball.w + kBallSlack * (std::abs(x) + std::abs(y) + std::abs(z));
+    const float along = x * dx[i] + y * dy[i] + z * dz[i], square = x * x + y * y + z * z;
     // Negated, so that what overflows is looked at again in double.
-    may |= !(cx * cx + cy * cy + cz * cz > reach * reach);
+    may |= !(square - along * along > reach + kBallSlack * square);
   }
   return may != 0;
 }
