@@ -27,7 +27,7 @@ using benchmarks::RayJudge;
 struct RayOptions {
   SceneFlags scene;
   ComparedRay ray;
-  std::string truth = kTriangleTruth;
+  std::string truth;  ///< empty: the scene's default
   bool quiet = false;
 };
 
@@ -105,13 +105,13 @@ std::string fast_text(const Scene& scene, const ComparedRay& ray, const Hit& hit
 }
 
 std::string truth_text(const Scene& scene, const ReferenceHit& hit) {
-  if (!hit.hit()) return "miss\n";
-  return fmt::format("{} at {} ({:a}), normal {},{},{}\n",
-                     surface_text(scene, hit.geometry, hit.primitive, hit.instance), hit.distance, hit.distance,
-                     hit.normal.x, hit.normal.y, hit.normal.z);
+  if (!hit.hit()) return "miss";
+  return fmt::format("{} at {} ({:a}), normal {},{},{}", surface_text(scene, hit.geometry, hit.primitive, hit.instance),
+                     hit.distance, hit.distance, hit.normal.x, hit.normal.y, hit.normal.z);
 }
 
-std::string answers(const Scene& scene, const ComparedRay& ray, const std::string& truth_name) {
+std::string answers(const Scene& scene, const ComparedRay& ray, const std::string& truth_asked_for) {
+  const std::string truth_name = truth_for(truth_asked_for, scene);
   const std::unique_ptr<const ReferenceTracer> truth = make_truth(truth_name, scene, nullptr);
   const TriangleReference facets(*scene.shapes);
   const RayJudge of_facets(*scene.shapes, *scene.intersector, *scene.shapes, facets);
@@ -124,7 +124,7 @@ std::string answers(const Scene& scene, const ComparedRay& ray, const std::strin
   const Vec3d& origin = scene.shapes->origin;
   std::string text = fmt::format("scene     {}, its origin at {},{},{} in the world\n", scene.description.name,
                                  origin.x, origin.y, origin.z);
-  text += "truth     " + truth_text(scene, found);
+  text += fmt::format("truth     {}, by {}\n", truth_text(scene, found), truth_name);
   const std::pair<const char*, Coherence> ways[] = {{"fast", Coherence::incoherent}, {"coherent", Coherence::coherent}};
   for (const auto& [name, coherence] : ways) {
     scene.intersector->intersect(rays, coherence, hits);
@@ -149,7 +149,7 @@ int ray_command(const Words& words) {
   const std::optional<RayOptions> options = parse_ray_options(words);
   if (!options) return kSuccess;
   SceneRun run{options->scene, 1, true, options->quiet};
-  run.keep_sources = options->truth == kSphereTruth;
+  run.keep_sources = truth_needs_sources(options->truth);
   return with_prepared_scene(
       run, [&](Scene& scene, const Interruption&) { print_result(answers(scene, options->ray, options->truth)); });
 }

@@ -13,16 +13,24 @@ namespace raytree::app {
 
 void add_truth_flag(CLI::App& command, std::string& truth) {
   command
-      .add_option("--truth", truth,
-                  "triangles: the fast tracer's own, in double (default); spheres: Whitted's bounding-sphere tracer, "
-                  "which knows polygons and limit surfaces")
+      .add_option(
+          "--truth", truth,
+          "spheres: Whitted's bounding-sphere tracer in double, which knows polygons and limit surfaces (default); "
+          "triangles: the fast tracer's own, in double")
       ->type_name("NAME");
 }
 
 void check_truth(const std::string& truth) {
-  if (truth != kTriangleTruth && truth != kSphereTruth)
+  if (!truth.empty() && truth != kTriangleTruth && truth != kSphereTruth)
     throw usage_error(fmt::format("--truth: \"{}\" is none of: triangles, spheres{}", truth,
                                   did_you_mean(truth, {kTriangleTruth, kSphereTruth})));
+}
+
+bool truth_needs_sources(const std::string& truth) { return truth != kTriangleTruth; }
+
+std::string truth_for(const std::string& truth, const Scene& scene) {
+  if (!truth.empty()) return truth;
+  return scene.description.render.tessellation.rate > 0 ? kTriangleTruth : kSphereTruth;
 }
 
 std::unique_ptr<const ReferenceTracer> make_truth(const std::string& truth, const Scene& scene,

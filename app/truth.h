@@ -20,10 +20,17 @@ inline constexpr const char* kSphereTruth = "spheres";
 
 /// Adds --truth.
 void add_truth_flag(CLI::App& command, std::string& truth);
-/// Throws Error (bad_input) unless it is a name.
+/// Throws Error (bad_input) unless it is a name, or empty: not asked for.
 void check_truth(const std::string& truth);
 
-/// Over the scene's shapes, which must keep their sources (SceneRun::keep_sources) for kSphereTruth.
+/// Whether the scene must keep what its meshes were made of (SceneRun::keep_sources) for this truth.
+bool truth_needs_sources(const std::string& truth);
+
+/// The truth asked for; without one kSphereTruth, or kTriangleTruth where surfaces were cut at a given rate, since
+/// their facets then have no tolerance.
+std::string truth_for(const std::string& truth, const Scene& scene);
+
+/// Over the scene's shapes.
 std::unique_ptr<const ReferenceTracer> make_truth(const std::string& truth, const Scene& scene,
                                                   const std::atomic<bool>* stop);
 

@@ -8,7 +8,9 @@
 #include "app/messages.h"
 #include "app/prepared_scene.h"
 #include "app/render_options.h"
+#include "app/suggestion.h"
 #include "app/truth.h"
+#include "benchmarks/planted_fault.h"
 #include "benchmarks/validation.h"
 
 namespace raytree::app {
@@ -24,10 +26,11 @@ struct ValidateOptions {
   std::vector<std::string> scenes;
   std::int64_t pixels = 10000;  ///< 0: all
   int threads = 0;
-  std::string truth = kTriangleTruth;
-  std::string picture;  ///< file; empty: none
-  std::string json;     ///< file beside the text; kInPlace: in place of it; empty: none
-  bool table = false;   ///< a line of Markdown for each scene in place of the text
+  std::string truth;                                ///< empty: the scene's default
+  const benchmarks::PlantedFault* fault = nullptr;  ///< null: none
+  std::string picture;                              ///< file; empty: none
+  std::string json;                                 ///< file beside the text; kInPlace: in place of it; empty: none
+  bool table = false;                               ///< a line of Markdown for each scene in place of the text
   bool quiet = false;
 };
 
@@ -42,9 +45,21 @@ Words with_json_value(const Words& words) {
   return result;
 }
 
+/// Throws Error (bad_input) unless it is the name of one, or empty.
+const benchmarks::PlantedFault* fault_named(const std::string& name) {
+  if (name.empty()) return nullptr;
+  std::vector<std::string> names;
+  for (const benchmarks::PlantedFault& fault : benchmarks::planted_faults()) {
+    if (fault.name == name) return &fault;
+    names.emplace_back(fault.name);
+  }
+  throw usage_error(
+      fmt::format("--plant: \"{}\" is none of: {}{}", name, fmt::join(names, ", "), did_you_mean(name, names)));
+}
+
 std::optional<ValidateOptions> parse_validate_options(const Words& words) {
   ValidateOptions options;
-  std::string threads, pixels;
+  std::string threads, pixels, fault;
   bool full = false;
   CLI::App command(
       "Compare the rays of a picture, one sample at each pixel's center, with what a slow and plain tracer in double "
@@ -58,6 +73,7 @@ std::optional<ValidateOptions> parse_validate_options(const Words& words) {
   command.add_option("--rays", pixels, "Compare the trees of about so many eye rays; default: 10000")->type_name("N");
   command.add_flag("--full", full, "Compare the trees of all pixels");
   add_truth_flag(command, options.truth);
+  command.add_option("--plant", fault, "Plant a fault in the fast tracer, to see that it is found")->type_name("FAULT");
   command.add_option("-o,--output", options.picture, "Picture with the disagreements marked (.png)")->type_name("FILE");
   command.add_flag("--table", options.table, "Print a table of Markdown, a line for each scene");
   command.add_option("--json", options.json, "Print JSON; with a name, write it to that file beside the text")
@@ -70,6 +86,7 @@ std::optional<ValidateOptions> parse_validate_options(const Words& words) {
   if (!parse_usage(command, with_json_value(words))) return std::nullopt;
   options.scene.antialias = "none";
   check_truth(options.truth);
+  options.fault = fault_named(fault);
   if (options.scenes.empty()) options.scenes.emplace_back();
   if (options.scenes.size() > 1 && !options.table)
     throw usage_error(
@@ -112,14 +129,20 @@ int validate_command(const Words& words) {
   for (const std::string& scene_name : options->scenes) {
     options->scene.scene = scene_name;
     SceneRun run{options->scene, options->threads, true, options->quiet};
-    run.keep_sources = options->truth == kSphereTruth;
+    run.keep_sources = truth_needs_sources(options->truth);
     const int status = with_prepared_scene(run, [&](Scene& scene, const Interruption& interruption) {
       ValidationOptions validation;
       validation.pixels = static_cast<std::uint64_t>(options->pixels);
-      validation.tolerance = facet_tolerance(options->truth, scene);
+      const std::string truth_name = truth_for(options->truth, scene);
+      validation.tolerance = facet_tolerance(truth_name, scene);
       validation.stop = &interruption.stop();
-      const std::unique_ptr<const ReferenceTracer> truth = make_truth(options->truth, scene, validation.stop);
-      const ValidationReport report = validate(scene, *scene.shapes, *truth, validation);
+      if (options->fault != nullptr)
+        scene.intersector = std::make_unique<benchmarks::FaultyTracer>(std::move(scene.intersector),
+                                                                       options->fault->make(*scene.shapes));
+      const std::unique_ptr<const ReferenceTracer> truth = make_truth(truth_name, scene, validation.stop);
+      ValidationReport report = validate(scene, *scene.shapes, *truth, validation);
+      report.truth_name = truth_name;
+      if (options->fault != nullptr) report.planted_fault = options->fault->description;
       if (!report.complete) return;
       write_report(*options, report);
       holds &= report.holds();

@@ -41,6 +41,8 @@ inline constexpr std::size_t kMostExamples = 3;  ///< of a verdict
 
 struct ValidationReport {
   std::string scene;
+  std::string truth_name;     ///< what was compared with, by its name on the command line
+  std::string planted_fault;  ///< in the fast tracer; empty: none
   int width = 0, height = 0;
   std::array<ValidationCounts, kRayKindCount> kinds;
   std::vector<ValidationExample> examples;  ///< by verdict, then in the order of tiles

@@ -61,6 +61,9 @@ std::string exact(const Vec3f& value) { return fmt::format("{},{},{}", value.x, 
 std::string report_text(const ValidationReport& report) {
   std::string text = fmt::format("scene    {}, {} x {}, {} of {} pixels' trees\n\n", report.scene, report.width,
                                  report.height, report.pixels, std::size_t(report.width) * std::size_t(report.height));
+  text.pop_back();
+  text += fmt::format("truth    {}\n{}\n", report.truth_name,
+                      report.planted_fault.empty() ? "" : "planted  " + report.planted_fault + "\n");
   text += fmt::format("{:<10} {:>11}", "rays", "compared");
   for (int v = 1; v < kRayVerdictCount; ++v) text += fmt::format(" {:>12}", kRayVerdictNames[std::size_t(v)]);
   text += fmt::format(" {:>12}\n", "largest ulp");
@@ -99,6 +102,8 @@ std::string report_text(const ValidationReport& report) {
 std::string report_json(const ValidationReport& report) {
   Json json;
   json["scene"] = report.scene;
+  json["truth"] = report.truth_name;
+  if (!report.planted_fault.empty()) json["planted_fault"] = report.planted_fault;
   json["image"] = {{"width", report.width}, {"height", report.height}};
   for (int kind = 0; kind < kRayKindCount; ++kind) json["rays"][kKindNames[kind]] = json_of(report.kinds[kind]);
   json["rays"]["all"] = json_of(report.all());

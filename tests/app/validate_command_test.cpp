@@ -48,11 +48,28 @@ TEST(ValidateCommand, TablesTakeSeveralScenes) {
   EXPECT_TRUE(contains(result.out, "\n| glass | "));
 }
 
-TEST(ValidateCommand, ComparesWithWhitteds1980TracerToo) {
-  const ProgramResult result =
-      run_program({"validate", "spheres-1980", "--truth", "spheres", "--size", "64x48", "--full"});
-  EXPECT_EQ(result.status, 0) << result.out << result.err;
-  EXPECT_TRUE(contains(result.out, "no defect"));
+TEST(ValidateCommand, ComparesWithWhitteds1980TracerUnlessFacetsHaveNoTolerance) {
+  const auto compared = [](std::vector<std::string> more) {
+    std::vector<std::string> words = {"validate", "teapot", "--size", "32x24", "--full"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult result = run_program(words);
+    EXPECT_EQ(result.status, 0) << result.out << result.err;
+    EXPECT_TRUE(contains(result.out, "no defect"));
+    return result.out;
+  };
+  EXPECT_TRUE(contains(compared({}), "truth    spheres\n"));
+  EXPECT_TRUE(contains(compared({"--rate", "4"}), "truth    triangles\n"));
+  EXPECT_TRUE(contains(compared({"--truth", "triangles"}), "truth    triangles\n"));
+}
+
+TEST(ValidateCommand, PlantedFaultsEndInStatus3) {
+  for (const char* fault :
+       {"dropped-triangles", "shifted-bound", "wrong-index", "epsilon", "wrong-distance", "swapped-barycentrics"}) {
+    const ProgramResult result = run_program({"validate", "glass", "--size", "64x48", "--full", "--plant", fault});
+    EXPECT_EQ(result.status, 3) << fault << "\n" << result.out << result.err;
+    EXPECT_TRUE(contains(result.out, "DEFECTS")) << fault;
+    EXPECT_TRUE(contains(result.out, "planted  ")) << fault;
+  }
 }
 
 TEST(ValidateCommand, WrongInputIsNamed) {
@@ -61,6 +78,7 @@ TEST(ValidateCommand, WrongInputIsNamed) {
   expect_bad_input({"validate", "glass", "rough"}, {"rough", "--table"});
   expect_bad_input({"validate", "glass", "-o", "a.exr"}, {"a.exr", ".png"});
   expect_bad_input({"validate", "glass", "--truth", "sphere"}, {"sphere", "did you mean spheres?"});
+  expect_bad_input({"validate", "glass", "--plant", "epsilo"}, {"epsilo", "did you mean epsilon?"});
   expect_bad_input({"validate", "teapot", "--truth", "spheres", "--rate", "4"}, {"--truth spheres", "rate"});
   expect_bad_input({"ray", "glass", "0,0,0"}, {"two vectors"});
   expect_bad_input({"ray", "glass", "0,0,0", "0,0,0"}, {"direction"});
@@ -75,7 +93,7 @@ TEST(RayCommand, AsksBothTracersAboutOneRay) {
     EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
   // The same ray, ended before anything is met.
   const ProgramResult ended = run_program({"ray", "spheres-1980", "0,1,5", "-0x1p-3,-0.2,-0.97", "--end", "0.001"});
-  EXPECT_TRUE(contains(ended.out, "truth     miss\nfast      miss")) << ended.out;
+  EXPECT_TRUE(contains(ended.out, "truth     miss, by spheres\nfast      miss")) << ended.out;
 }
 
 }  // namespace

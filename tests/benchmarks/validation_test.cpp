@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
-#include <functional>
 #include <memory>
 
+#include "benchmarks/planted_fault.h"
 #include "geometry/sphere_bounded_intersector.h"
 #include "geometry/surface.h"
 #include "geometry/triangle_reference.h"
@@ -56,46 +56,6 @@ ValidationReport validated(SceneDescription description) {
   Scene scene = test::prepared(std::move(description));
   return validated(scene, *scene.shapes);
 }
-
-/// Alters what a tracer says of a ray.
-class FaultyTracer final : public RayIntersector {
- public:
-  using Fault = std::function<Hit(const RayIntersector&, const Vec3f&, const Vec3f&, float, const Hit&)>;
-  FaultyTracer(std::unique_ptr<const RayIntersector> tracer, Fault fault)
-      : tracer_(std::move(tracer)), fault_(std::move(fault)) {}
-
-  static Hit ask(const RayIntersector& tracer, const Vec3f& origin, const Vec3f& direction, float end) {
-    RayBatch ray(1);
-    HitBatch hits(1);
-    ray.push(origin, direction, end);
-    tracer.intersect(ray, Coherence::incoherent, hits);
-    return hits[0];
-  }
-  /// What lies behind a hit.
-  static Hit behind(const RayIntersector& tracer, const Vec3f& origin, const Vec3f& direction, float end, float from) {
-    Hit next = ask(tracer, origin + direction * from, direction, end - from);
-    next.distance += from;
-    return next;
-  }
-
-  void intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept override {
-    tracer_->intersect(rays, coherence, hits);
-    for (std::size_t i = 0; i < rays.size; ++i)
-      if (hits.geometry[i] != kNoGeometry)
-        hits.set(i, fault_(*tracer_, rays.origin(i), rays.direction(i), rays.max_distance[i], hits[i]));
-  }
-  void occluded(const RayBatch& rays, Coherence, std::uint8_t* occluded) const noexcept override {
-    HitBatch hits(rays.size);
-    intersect(rays, Coherence::incoherent, hits);
-    for (std::size_t i = 0; i < rays.size; ++i) occluded[i] = hits.geometry[i] != kNoGeometry;
-  }
-  std::size_t memory_bytes() const noexcept override { return 0; }
-  std::size_t peak_memory_bytes() const noexcept override { return 0; }
-
- private:
-  std::unique_ptr<const RayIntersector> tracer_;
-  Fault fault_;
-};
 
 ValidationReport with_fault(FaultyTracer::Fault fault) {
   Scene scene = test::prepared(globes());
@@ -203,6 +163,14 @@ TEST(Validation, WrongBarycentricsAreSeenInThePicture) {
       });
   EXPECT_FALSE(report.holds());
   EXPECT_GT(report.differing_pixels, 0u);
+}
+
+TEST(Validation, PlantedFaultsAreFoundOnAnyScene) {
+  for (const PlantedFault& fault : planted_faults()) {
+    Scene scene = test::prepared(globes());
+    scene.intersector = std::make_unique<FaultyTracer>(std::move(scene.intersector), fault.make(*scene.shapes));
+    EXPECT_FALSE(validated(scene, *scene.shapes).holds()) << fault.name;
+  }
 }
 
 TEST(Validation, SurfacesThatCoincideAreCoplanar) {
