@@ -120,6 +120,10 @@ RayComparison RayJudge::nearest_on_facets(const ComparedRay& ray, const Hit& hit
   if (!hits && !found.hit()) return {};
   if (!hits) return missed(ray, found, ray.max_distance, 0);
   const SurfaceBounds bounds = surface_bounds(shapes_, ray.origin, ray.direction, id_of(hit), hit.distance);
+  // No truth is needed to tell wrong weights; where the ray grazes, they have no bound.
+  if (hit.geometry >= kFirstMeshGeometry && !bounds.grazing &&
+      std::max(std::abs(hit.u - bounds.u), std::abs(hit.v - bounds.v)) > bounds.weight_error)
+    return comparison(RayVerdict::defect, bounds);
   // A truth that knows what triangles stand for names one by the surface's parameters: any of the mesh will do.
   if (found.face != kNoFace && found.geometry == hit.geometry && found.instance == hit.instance && !bounds.grazing &&
       id_of(hit) != id_of(found) && std::abs(hit.distance - found.distance) <= bounds.distance_error)

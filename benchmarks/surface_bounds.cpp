@@ -121,8 +121,11 @@ SurfaceBounds triangle_bounds(const Question& question, const TriangleMesh& mesh
   }
   // u = U / (U + V + W), likewise v: off by both parts' errors, and rounded.
   const double longest = std::max({(v[1] - v[0]).length(), (v[2] - v[1]).length(), (v[0] - v[2]).length()});
-  bounds.position_error =
-      (2 * (edge_error[0] + edge_error[1] + edge_error[2]) / std::abs(sum) + gamma(8)) * longest * question.ray.scale();
+  const double sum_error = edge_error[0] + edge_error[1] + edge_error[2];
+  bounds.u = edge[2] / sum;
+  bounds.v = edge[0] / sum;
+  bounds.weight_error = std::abs(sum) > sum_error ? 2 * sum_error / (std::abs(sum) - sum_error) + gamma(8) : kInfinity;
+  bounds.position_error = bounds.weight_error * longest * question.ray.scale();
   bool has_positive = false, has_negative = false;
   for (int i = 0; i < 3; ++i) {
     has_positive |= is_certain[i] && edge[i] > 0;

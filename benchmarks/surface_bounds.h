@@ -27,9 +27,10 @@ struct SurfaceBounds {
   double distance_error = 0;  ///< bound on how far a computed distance may be off; infinity where grazing
   double edge_distance = 0;   ///< of the line from the nearest edge or silhouette, scene units
   double edge_error = 0;      ///< bound on how far that may be off
-  double position_error =
-      0;                    ///< of triangles: bound on how far barycentrics may be off along the triangle, scene units
-  double normal_error = 0;  ///< bound on the length of the difference of unit normals
+  double u = 0, v = 0;        ///< of triangles: the weights of corner 1 and corner 2 where the line meets its plane
+  double weight_error = 0;    ///< bound on how far each computed weight may be off
+  double position_error = 0;  ///< the same along the triangle, scene units
+  double normal_error = 0;    ///< bound on the length of the difference of unit normals
 };
 
 /// The bounds for a ray and a surface; of a surface that it meets twice, those where it is nearest to `near_distance`.
