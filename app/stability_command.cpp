@@ -31,7 +31,7 @@ struct StabilityCommandOptions {
 };
 
 /// Seconds of "90", "90s", "1.5m" or "1h".
-double parse_budget(const std::string& text) {
+double suite_budget(const std::string& text) {
   constexpr std::string_view kUnits = "smh";
   const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
   const double number = parse_real("--budget", unit == std::string_view::npos ? text : text.substr(0, text.size() - 1));
@@ -80,7 +80,7 @@ std::optional<StabilityCommandOptions> parse_stability_options(const Words& word
   prepare_usage(command);
   if (!parse_usage(command, words)) return std::nullopt;
   options.faults = parse_faults(faults);
-  options.effort = benchmarks::stability_effort(parse_budget(budget));
+  options.effort = benchmarks::stability_effort(suite_budget(budget));
   options.threads = parse_threads(threads);
   if (options.folder.empty() && !options.list)
     throw usage_error("no output: add -o DIR, a folder for the page, for example -o stability");
@@ -100,7 +100,8 @@ std::string list_text(const std::vector<GroupedCase>& cases) {
 void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw Error(ErrorKind::failure, {}, fmt::format("{}: cannot make this folder: {}", folder, error.message()));
+  if (error)
+    throw Error(ErrorKind::failure, {}, fmt::format("{}: cannot make this folder: {}", folder, error.message()));
 }
 
 StabilityReport measured(const StabilityCommandOptions& options, const std::vector<GroupedCase>& cases,
@@ -135,7 +136,8 @@ int stability_command(const Words& words) {
   if (!options) return kSuccess;
   const std::vector<GroupedCase> cases = benchmarks::matching_cases(benchmarks::stability_cases(), options->filter);
   if (cases.empty())
-    throw usage_error(fmt::format("--filter: no case is named \"{}\"; raytree stability --list names them", options->filter));
+    throw usage_error(
+        fmt::format("--filter: no case is named \"{}\"; raytree stability --list names them", options->filter));
   if (options->list) {
     print_result(list_text(cases));
     return kSuccess;

@@ -153,8 +153,8 @@ void add_gray_picture(StabilityResult& result, const StabilityRun& run, std::str
 
 StabilityFigure predicted_figure(std::string method, std::string quantity, double measured, double predicted,
                                  double error, std::string known, StabilityExpectation expectation) {
-  return {std::move(method), std::move(quantity), measured, predicted - error, predicted + error,
-          std::move(known),  expectation};
+  return {std::move(method), std::move(quantity), measured,   predicted - error,
+          predicted + error, std::move(known),    expectation};
 }
 
 }  // namespace raytree::benchmarks::facets

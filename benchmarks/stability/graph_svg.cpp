@@ -85,17 +85,17 @@ std::string graph_svg(const StabilityGraph& graph) {
     const StabilityGraph::Line& line = graph.lines[i];
     // A prediction wears the color of the line before it, which it is about.
     const std::size_t of = line.predicted && i > 0 ? i - 1 : i;
-    const std::string style = fmt::format("fill:none;stroke:{};stroke-width:2{}",
-                                          kLineColors[of % std::size(kLineColors)],
-                                          line.predicted ? ";stroke-dasharray:2 4" : "");
+    const std::string style =
+        fmt::format("fill:none;stroke:{};stroke-width:2{}", kLineColors[of % std::size(kLineColors)],
+                    line.predicted ? ";stroke-dasharray:2 4" : "");
     std::string path, dots;
     for (const auto& point : line.points) {
       if (!can_be_drawn(point)) continue;
       path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x.at(point.first), y.at(point.second));
-      dots += fmt::format(
-          "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"><title>{}: {} at {}</title></circle>",
-          x.at(point.first), y.at(point.second), kLineColors[of % std::size(kLineColors)], escaped_html(line.name),
-          figure_text(point.second), figure_text(point.first));
+      dots +=
+          fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"><title>{}: {} at {}</title></circle>",
+                      x.at(point.first), y.at(point.second), kLineColors[of % std::size(kLineColors)],
+                      escaped_html(line.name), figure_text(point.second), figure_text(point.first));
     }
     svg += fmt::format("<path d=\"{}\" style=\"{}\"/>", path, style);
     if (!line.predicted) svg += dots;

@@ -108,8 +108,7 @@ StabilityResult highlight_shape(const StabilityRun& run) {
   StabilityResult result;
   const int size = run.effort < 0.5 ? 301 : 601;
   const double c = 0.5;
-  const Contour triangles =
-      contour_of(green_of(one_lit_corner(FacetInterpolation::barycentric, size), run), size, c);
+  const Contour triangles = contour_of(green_of(one_lit_corner(FacetInterpolation::barycentric, size), run), size, c);
   const Contour quads = contour_of(green_of(one_lit_corner(FacetInterpolation::bilinear, size), run), size, c);
   const double astroid = (1 - c) / (std::sqrt(2.0) * (1 - std::sqrt(c)));
   result.figures.push_back(ratio_figure("Gouraud, one lit corner of triangles", triangles, std::sqrt(2.0),
@@ -148,9 +147,7 @@ StabilityResult lost_highlight(const StabilityRun& run) {
   const auto scene = [&](ShadingMethod method, int width, int height, double window) {
     return highlit_scene(faceted_cylinder(kSides, method, 180.0 / kSides), width, height, window, kExponent);
   };
-  const auto peak = [&](ShadingMethod method) {
-    return largest_of(green_of(scene(method, 401, 1, 0.005), run));
-  };
+  const auto peak = [&](ShadingMethod method) { return largest_of(green_of(scene(method, 401, 1, 0.005), run)); };
   const double left = std::pow(std::cos(kPi / kSides), kExponent);
   const char* quantity = "peak of the highlight, n = 50, over the true peak";
   result.figures = {
@@ -185,8 +182,9 @@ StabilityResult prism_flicker(const StabilityRun& run) {
     };
     const double exact = 1 - std::pow(std::cos(kPi / 3), exponent);
     const std::string quantity = fmt::format("swing of the peak over a turn, n = {:g}", exponent);
-    // The peak is a corner, at most half a pixel from the nearest center, where light falls by exact / sin (pi / 3).
-    const double fall = exact / std::sin(kPi / 3) * kPixel / 2 + float_error(exponent);
+    // The peak is a corner, at most half a pixel from the nearest center; from there light falls to 0 over sin (pi /
+    // 3).
+    const double fall = kPixel / 2 / std::sin(kPi / 3) + float_error(exponent);
     result.figures.push_back({"Gouraud, prism of 3 sides", quantity, swing(ShadingMethod::gouraud), exact - fall,
                               exact + float_error(exponent),
                               fmt::format("1 - cos^n (pi / 3) = {:.3f} (Phong 1973, fig. 1.11)", exact),
@@ -255,8 +253,8 @@ std::vector<StabilityCase> highlight_cases() {
        "Phong 1973, fig. 1.11", prism_flicker},
       {6, "facets-needed", "The facets that a highlight needs",
        "A cylinder of as many sides as are said to bring a highlight within 1/255 everywhere",
-       "Interpolated normals: 19 sides in place of 251 or 3445", "closed forms: flat ~ 1 / k, Gouraud ~ 1 / k^2, Phong ~ 1 / k^3",
-       sides_needed},
+       "Interpolated normals: 19 sides in place of 251 or 3445",
+       "closed forms: flat ~ 1 / k, Gouraud ~ 1 / k^2, Phong ~ 1 / k^3", sides_needed},
   };
 }
 

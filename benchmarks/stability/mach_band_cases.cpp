@@ -17,8 +17,8 @@ namespace {
 constexpr double kCenterSigma = 2, kSurroundSigma = 4;  ///< pixels
 constexpr int kKernelReach = 20;                        ///< pixels: five times the wider sigma
 constexpr double kMachRadius = 1000;                    ///< of the cylinder, pixels
-constexpr int kMachWidth = 1100;                        ///< pixels; the middle half of the cylinder and the kernel's reach
-constexpr double kWeber = 0.01;                         ///< the least relative step of light that is seen
+constexpr int kMachWidth = 1100;  ///< pixels; the middle half of the cylinder and the kernel's reach
+constexpr double kWeber = 0.01;   ///< the least relative step of light that is seen
 
 /// Difference of Gaussians, sums to 0: [2 kKernelReach + 1].
 std::vector<double> center_and_surround() {
@@ -30,8 +30,7 @@ std::vector<double> center_and_surround() {
       gaussian.push_back(std::exp(-i * i / (2 * sigma * sigma)));
       sum += gaussian.back();
     }
-    for (std::size_t i = 0; i < kernel.size(); ++i)
-      kernel[i] += (sigma == kCenterSigma ? 1 : -1) * gaussian[i] / sum;
+    for (std::size_t i = 0; i < kernel.size(); ++i) kernel[i] += (sigma == kCenterSigma ? 1 : -1) * gaussian[i] / sum;
   }
   return kernel;
 }
@@ -66,8 +65,7 @@ MachResponse mach_response_of(int sides, ShadingMethod method, const StabilityRu
     truth.push_back(circle.light(method, x, 1));
     predicted.push_back(facets.light(method, x, 1));
   }
-  const SceneDescription scene =
-      headlit_scene(faceted_cylinder(sides, method, -90), kMachWidth, 1, 1 / kMachRadius);
+  const SceneDescription scene = headlit_scene(faceted_cylinder(sides, method, -90), kMachWidth, 1, 1 / kMachRadius);
   return {mach_response(green_of(scene, run), truth), mach_response(predicted, truth)};
 }
 
@@ -77,8 +75,8 @@ constexpr std::array<int, 4> kMachSides = {12, 24, 48, 96};
 /// Rounding of light near 1 through a kernel whose magnitudes sum to less than 2, at light of at least cos 30 degrees.
 const double kMachError = 2 * float_error() / std::cos(kPi / 6) / kWeber;
 
-void add_mach_figures(StabilityResult& result, const char* name, ShadingMethod method,
-                      StabilityExpectation expectation, const char* law, const StabilityRun& run) {
+void add_mach_figures(StabilityResult& result, const char* name, ShadingMethod method, StabilityExpectation expectation,
+                      const char* law, const StabilityRun& run) {
   StabilityGraph::Line seen{name, {}, false}, predicted{fmt::format("{}, closed form", name), {}, true};
   std::array<MachResponse, kMachSides.size()> responses;
   for (std::size_t i = 0; i < kMachSides.size(); ++i) {
@@ -103,8 +101,10 @@ void add_mach_figures(StabilityResult& result, const char* name, ShadingMethod m
 }
 
 StabilityGraph mach_graph() {
-  return {"Mach bands on a matte cylinder of 1000 pixels' radius", "sides",
-          "largest |DoG * log(light / truth)|, in 1 %", {}};
+  return {"Mach bands on a matte cylinder of 1000 pixels' radius",
+          "sides",
+          "largest |DoG * log(light / truth)|, in 1 %",
+          {}};
 }
 
 void add_cylinder_picture(StabilityResult& result, const StabilityRun& run, const char* caption, int sides,

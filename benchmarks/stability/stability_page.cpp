@@ -100,9 +100,8 @@ std::string figures_html(const StabilityEntry& entry) {
     html += fmt::format(
         "<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number interval\">{}</td><td>{}</td>"
         "<td class=\"{}\">{}</td></tr>\n",
-        escaped_html(figure.method), escaped_html(figure.quantity), figure_text(figure.measured),
-        interval_text(figure), escaped_html(figure.known), verdict_class(figure.verdict()),
-        verdict_words(figure.verdict()));
+        escaped_html(figure.method), escaped_html(figure.quantity), figure_text(figure.measured), interval_text(figure),
+        escaped_html(figure.known), verdict_class(figure.verdict()), verdict_words(figure.verdict()));
   return html + "</table></div>\n";
 }
 
@@ -156,7 +155,7 @@ std::string stability_page(const StabilityReport& report, const std::vector<Page
   };
   for (const PageSection& section : more) {
     link(section.id, section.title);
-    sections += fmt::format("<section class=\"card\" id=\"{}\"><h2>{}</h2>\n{}</section>\n", escaped_html(section.id),
+    sections += fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", escaped_html(section.id),
                             escaped_html(section.title), section.html);
   }
   const char* open = nullptr;

@@ -12,7 +12,7 @@ namespace raytree::benchmarks {
 struct PageSection {
   std::string id;     ///< for links: "maps"
   std::string title;  ///< text
-  std::string html;
+  std::string html;   ///< below the title; with cards of its own
 };
 
 /// One file that needs no network (report_page.h). `more` stands between the counts and the cases.

@@ -120,7 +120,7 @@ std::string stability_text(const StabilityReport& report) {
   return text + counts_text(report) + "\n";
 }
 
-std::string stability_json(const StabilityReport& report) {
+std::string stability_json(const StabilityReport& report, const std::string& maps) {
   OrderedJson json;
   json["machine"] = machine_line();
   json["effort"] = report.effort;
@@ -144,6 +144,7 @@ std::string stability_json(const StabilityReport& report) {
     for (const StabilityFigure& figure : entry.result.figures) one["figures"].push_back(figure_json(figure));
     json["cases"].push_back(std::move(one));
   }
+  if (!maps.empty()) json["maps"] = OrderedJson::parse(maps);
   // What others wrote in an error may not be UTF-8.
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }

@@ -25,6 +25,7 @@ std::string counts_text(const StabilityReport& report);
 
 /// Table: case, method, measured, best known, verdict; then the counts.
 std::string stability_text(const StabilityReport& report);
-std::string stability_json(const StabilityReport& report);
+/// `maps`: JSON that stands as "maps" beside the cases; empty: none.
+std::string stability_json(const StabilityReport& report, const std::string& maps = {});
 
 }  // namespace raytree::benchmarks

@@ -15,15 +15,15 @@ namespace {
 
 constexpr int kTurningSides = 12;
 constexpr double kTurningExponent = 20;
-constexpr int kTurningWidth = 240;                ///< pixels
+constexpr int kTurningWidth = 240;  ///< pixels
 constexpr double kTurningPixel = 2.2 / kTurningWidth;
 
 /// One row of pixels a frame.
 using FrameRows = std::vector<std::vector<double>>;
 
 struct TemporalError {
-  double deviation = 0;     ///< of (frame - truth) over time, root mean square over pixels
-  double worst = 0;         ///< of one pixel
+  double deviation = 0;       ///< of (frame - truth) over time, root mean square over pixels
+  double worst = 0;           ///< of one pixel
   double highlight_jump = 0;  ///< of its center of gravity from frame to frame, pixels, the largest
 };
 
@@ -75,31 +75,19 @@ StabilityResult turning_cylinder(const StabilityRun& run) {
       for (const double x : centers) predicted.back().push_back(circle.light(method, x, kTurningExponent));
     }
     const TemporalError error = temporal_error(seen, truth), known = temporal_error(predicted, truth);
-    // A corner that lies on a pixel's center to rounding may fall to either side's facet, in a frame or two: then the
-    // pixel is off by no more than neighboring facets differ, at most sqrt(n / e) times their angle.
-    const double step = std::sqrt(kTurningExponent / std::exp(1.0)) * 2 * 3.1416 / kTurningSides;
-    const double slack = float_error(kTurningExponent) +
-                         (method == ShadingMethod::flat ? step / std::sqrt(frame_count * double(kTurningWidth)) : 0);
+    // No corner comes within rounding of a pixel's center, so that each sees the facet that the formulas say.
+    const double rounding = float_error(kTurningExponent);
     const char* where = method == ShadingMethod::flat      ? "closed form of the facets' normals"
                         : method == ShadingMethod::gouraud ? "closed form: cos^n linear between corners"
                                                            : "closed form: the radius through the facet's point";
-    result.figures.push_back(predicted_figure(name, "deviation of (frame - truth) over time, RMS over pixels",
-                                              error.deviation, known.deviation, slack,
-                                              fmt::format("{:.4f} ({}); true cylinder 0", known.deviation, where),
-                                              expectation));
-    result.figures.push_back(
-        predicted_figure(name, "the same of the worst pixel", error.worst, known.worst,
-                         float_error(kTurningExponent) +
-                             (method == ShadingMethod::flat ? step / std::sqrt(double(frame_count)) : 0),
-                         fmt::format("{:.4f}", known.worst), expectation));
-    // Of a sum of so many pixels, each wrong by no more than that, over the width of a highlight.
-    const double lit = std::sqrt(kTurningExponent) / (2 * kTurningPixel);
-    result.figures.push_back(
-        predicted_figure(name, "the highlight's largest leap between frames, pixels", error.highlight_jump,
-                         known.highlight_jump,
-                         kTurningWidth * float_error(kTurningExponent) +
-                             (method == ShadingMethod::flat ? kTurningWidth / 2.0 * step / lit : 0),
-                         fmt::format("{:.4f}; true cylinder 0", known.highlight_jump), expectation));
+    result.figures.push_back(predicted_figure(
+        name, "deviation of (frame - truth) over time, RMS over pixels", error.deviation, known.deviation, rounding,
+        fmt::format("{:.4f} ({}); true cylinder 0", known.deviation, where), expectation));
+    result.figures.push_back(predicted_figure(name, "the same of the worst pixel", error.worst, known.worst, rounding,
+                                              fmt::format("{:.4f}", known.worst), expectation));
+    result.figures.push_back(predicted_figure(
+        name, "the highlight's largest leap between frames, pixels", error.highlight_jump, known.highlight_jump,
+        kTurningWidth * rounding, fmt::format("{:.4f}; true cylinder 0", known.highlight_jump), expectation));
     if (method == ShadingMethod::limit) continue;
     std::vector<float> picture;
     for (const auto& row : seen)

@@ -39,12 +39,12 @@ StabilityResult averaged_across_edge(const StabilityRun& run) {
   const double expected = std::atan2(half, half + share) / kDegree;
   const double rounding = float_error() / kDegree;
   const char* quantity = "normal at the foot of a fin off, degrees";
-  result.figures = {predicted_figure("one normal a vertex", quantity, error(180), expected, rounding,
-                                     fmt::format("45 at the edge, {:.2f} half a pixel beside it (Gouraud 1971, fig. 11)",
-                                                 expected),
-                                     StabilityExpectation::fails_as_known),
-                    predicted_figure("split at creases of 40 degrees", quantity, error(40), 0, rounding, "0",
-                                     StabilityExpectation::holds)};
+  result.figures = {
+      predicted_figure("one normal a vertex", quantity, error(180), expected, rounding,
+                       fmt::format("45 at the edge, {:.2f} half a pixel beside it (Gouraud 1971, fig. 11)", expected),
+                       StabilityExpectation::fails_as_known),
+      predicted_figure("split at creases of 40 degrees", quantity, error(40), 0, rounding, "0",
+                       StabilityExpectation::holds)};
   for (const auto& [caption, crease] : {std::pair("averaged: the edge is painted round", 180.0), {"split", 40.0}}) {
     SceneDescription scene = fin_scene(crease);
     scene.cameras[0].position = {5, 6, 7};
@@ -61,8 +61,8 @@ StabilityResult averaged_across_edge(const StabilityRun& run) {
 /// the others, or four corners of it.
 PolygonMesh cut_corner() {
   PolygonMesh mesh;
-  mesh.positions.assign({Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1), Vec3f(1, 1, 0),
-                         Vec3f(0, 1, 1), Vec3f(1, 0, 1)});
+  mesh.positions.assign(
+      {Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1), Vec3f(1, 1, 0), Vec3f(0, 1, 1), Vec3f(1, 0, 1)});
   // z = 0: the diagonal starts at the corner; x = 0 and y = 0: it passes by.
   mesh.corners.assign({0, 4, 1, 0, 2, 4, 0, 3, 2, 3, 5, 2, 0, 1, 3, 1, 6, 3});
   return mesh;
@@ -83,13 +83,13 @@ StabilityResult weighted_normals(const StabilityRun&) {
   const char* quantity = "normal of a cube's corner off its diagonal, degrees";
   for (const auto& [name, method] :
        {std::pair("unit normals of triangles", NormalMethod::unit), {"weighted by area", NormalMethod::area}})
-    result.figures.push_back(predicted_figure(name, quantity, error(method), twice, rounding,
-                                              fmt::format("acos(4 / sqrt 18) = {:.2f}: one square has two triangles there", twice),
-                                              StabilityExpectation::fails_as_known));
-  result.figures.push_back(predicted_figure("weighted by angle (the renderer's own)", quantity,
-                                            error(NormalMethod::angle), 0, rounding,
-                                            "0 however faces are cut (Thuermer and Wuethrich 1998)",
-                                            StabilityExpectation::holds));
+    result.figures.push_back(
+        predicted_figure(name, quantity, error(method), twice, rounding,
+                         fmt::format("acos(4 / sqrt 18) = {:.2f}: one square has two triangles there", twice),
+                         StabilityExpectation::fails_as_known));
+  result.figures.push_back(
+      predicted_figure("weighted by angle (the renderer's own)", quantity, error(NormalMethod::angle), 0, rounding,
+                       "0 however faces are cut (Thuermer and Wuethrich 1998)", StabilityExpectation::holds));
   return result;
 }
 
@@ -130,20 +130,18 @@ StabilityResult painted_dent(const StabilityRun& run) {
   StabilityResult result;
   const auto error = [&](bool mended, ShadingMethod method) {
     double square = 0;
-    for (const float value : green_of(dented_plate(mended, method), run))
-      square += std::pow(value - std::sqrt(0.5), 2);
+    for (const float value : green_of(dented_plate(mended, method), run)) square += std::pow(value - std::sqrt(0.5), 2);
     return std::sqrt(square / (kDentSize * kDentSize));
   };
   const char* quantity = "light off, RMS over the plate";
   for (const auto& [name, method] : {std::pair("Gouraud", ShadingMethod::gouraud), {"Phong", ShadingMethod::phong}}) {
     const double expected = dent_error(method);
     // The midpoint rule over pixels of 1/25 of the dent's radius: the integrand's kinks are off by its square.
-    result.figures.push_back(predicted_figure(fmt::format("{}, file's normals", name), quantity, error(false, method),
-                                              expected, expected * 2 / (25 * 25), fmt::format("{:.4f} (integral)", expected),
-                                              StabilityExpectation::fails_as_known));
+    result.figures.push_back(predicted_figure(
+        fmt::format("{}, file's normals", name), quantity, error(false, method), expected, expected * 2 / (25 * 25),
+        fmt::format("{:.4f} (integral)", expected), StabilityExpectation::fails_as_known));
     result.figures.push_back(predicted_figure(fmt::format("{}, normals made of the facets", name), quantity,
-                                              error(true, method), 0, float_error(), "0",
-                                              StabilityExpectation::holds));
+                                              error(true, method), 0, float_error(), "0", StabilityExpectation::holds));
   }
   for (const auto& [caption, mended] : {std::pair("one normal off by 30 degrees", false), {"normals of facets", true}})
     add_picture(result, run, caption, dented_plate(mended, ShadingMethod::phong), 180, 180);
@@ -197,21 +195,21 @@ StabilityResult rotated_interpolation(const StabilityRun& run) {
 }  // namespace
 
 std::vector<StabilityCase> vertex_normal_cases() {
-  return {{11, "normals-across-creases", "Normals averaged across an edge that is none",
-           "A fin and a plate that share vertices at a right angle",
-           "Split normals where facets meet at more than the crease angle", "Gouraud 1971, fig. 11 (the T-37's tail)",
-           averaged_across_edge},
-          {12, "normals-by-weights", "Vertex normals that depend on how faces are cut",
-           "A cube's corner where one square has two triangles and the others have one",
-           "Weigh facets by their angle at the vertex", "Gouraud 1971, p. 30 and fig. 17; Thuermer and Wuethrich 1998",
-           weighted_normals},
-          {13, "wrong-normal-dent", "A wrong normal paints a dent",
-           "One vertex normal of a flat plate leans by 30 degrees", "Normals made of the facets (`smoothing`)",
-           "Gouraud 1971, fig. 12", painted_dent},
-          {14, "scanline-rotation", "Interpolation along scan lines depends on rotation",
-           "A square whose corners are 1, 0, 1, 0 turns about its middle",
-           "Bilinear in the quad's own parameters, or over fixed triangles", "Phong 1973, sec. I.2; Gouraud 1971, fig. 12",
-           rotated_interpolation}};
+  return {
+      {11, "normals-across-creases", "Normals averaged across an edge that is none",
+       "A fin and a plate that share vertices at a right angle",
+       "Split normals where facets meet at more than the crease angle", "Gouraud 1971, fig. 11 (the T-37's tail)",
+       averaged_across_edge},
+      {12, "normals-by-weights", "Vertex normals that depend on how faces are cut",
+       "A cube's corner where one square has two triangles and the others have one",
+       "Weigh facets by their angle at the vertex", "Gouraud 1971, p. 30 and fig. 17; Thuermer and Wuethrich 1998",
+       weighted_normals},
+      {13, "wrong-normal-dent", "A wrong normal paints a dent", "One vertex normal of a flat plate leans by 30 degrees",
+       "Normals made of the facets (`smoothing`)", "Gouraud 1971, fig. 12", painted_dent},
+      {14, "scanline-rotation", "Interpolation along scan lines depends on rotation",
+       "A square whose corners are 1, 0, 1, 0 turns about its middle",
+       "Bilinear in the quad's own parameters, or over fixed triangles", "Phong 1973, sec. I.2; Gouraud 1971, fig. 12",
+       rotated_interpolation}};
 }
 
 }  // namespace raytree::benchmarks::facets
