@@ -201,10 +201,11 @@ StabilityResult sides_needed(const StabilityRun& run) {
   constexpr double kExponent = 50, kWindow = 1.6;
   constexpr int kWidth = 6000;
   const std::vector<double> centers = pixel_centers(kWidth, kWindow / kWidth);
-  const auto scene = [&](ShadingMethod method, int sides) {
-    return highlit_scene(faceted_cylinder(sides, method, 180.0 / sides - 90), kWidth, 1, kWindow / kWidth, kExponent);
+  const auto seen_of = [&](ShadingMethod method, int sides, double turned_degrees) {
+    return green_of(
+        highlit_scene(faceted_cylinder(sides, method, turned_degrees), kWidth, 1, kWindow / kWidth, kExponent), run);
   };
-  const std::vector<float> exact = green_of(scene(ShadingMethod::limit, 0), run);
+  const std::vector<float> exact = seen_of(ShadingMethod::limit, 0, 0);
   const FacetedCircle circle(0, 0);
   const struct {
     const char* name;
@@ -215,8 +216,9 @@ StabilityResult sides_needed(const StabilityRun& run) {
               {"Gouraud, 251 sides", ShadingMethod::gouraud, 251, kFailsAsKnown},
               {"Phong, 19 sides", ShadingMethod::phong, 19, kHolds}};
   for (const auto& row : rows) {
-    const std::vector<float> seen = green_of(scene(row.method, row.sides), run);
-    const FacetedCircle facets(row.sides, 180.0 / row.sides - 90);
+    const double turned_degrees = 180.0 / row.sides - 90;  // a facet faces the viewer
+    const std::vector<float> seen = seen_of(row.method, row.sides, turned_degrees);
+    const FacetedCircle facets(row.sides, turned_degrees);
     // Where sides are few, hits beside the one that faces the viewer lie visibly off the circle, which is no fault of
     // the shading.
     const double reach = row.method == ShadingMethod::phong ? std::sin(kPi / row.sides) : 1;
