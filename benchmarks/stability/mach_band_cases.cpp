@@ -117,6 +117,8 @@ StabilityResult flat_bands(const StabilityRun& run) {
   result.graphs.push_back(mach_graph());
   add_mach_figures(result, "flat", ShadingMethod::flat, StabilityExpectation::fails_as_known,
                    "1: a step of 2 (pi / k) tan 30 degrees", run);
+  add_mach_figures(result, "Phong", ShadingMethod::phong, StabilityExpectation::holds,
+                   "1: no steps, and what breaks of slope the facets' places leave", run);
   // DoG's largest response to a step of 1: where G_2 and G_4 are equal, at x^2 = 32/3 ln 2.
   const double at = std::sqrt(32 * std::log(2.0) / 3);
   const double response =

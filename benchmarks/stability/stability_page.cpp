@@ -17,7 +17,7 @@ constexpr const char* kStabilityStyle = R"(
 .count { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 12px 18px; min-width: 150px; }
 .count b { display: block; font-size: 28px; line-height: 1.2; font-variant-numeric: tabular-nums; }
 .planted { border-color: var(--bad); }
-nav a { color: var(--accent); text-decoration: none; margin-right: 18px; white-space: nowrap; }
+nav a, td a { color: var(--accent); text-decoration: none; } nav a { margin-right: 18px; white-space: nowrap; }
 .tools { position: sticky; top: 0; background: var(--paper); padding: 10px 0; display: flex; flex-wrap: wrap; gap: 8px; z-index: 1; }
 .tools button, .tools input { font: inherit; color: inherit; background: var(--card); border: 1px solid var(--line);
   border-radius: 6px; padding: 4px 12px; }
@@ -32,6 +32,7 @@ dt { color: var(--quiet); } dd { margin: 0; }
 .pictures figure { width: min-content; } .pictures img { display: block; border-radius: 4px; max-width: none; }
 .graph { width: 100%; max-width: 640px; display: block; margin: 0 0 14px; }
 .figures { overflow-x: auto; } .figures th, .figures td { font-size: 14px; }
+.verdict { white-space: nowrap; } summary { cursor: pointer; margin: 14px 0; }
 .interval { color: var(--quiet); white-space: nowrap; }
 [hidden] { display: none; }
 )";
@@ -99,7 +100,7 @@ std::string figures_html(const StabilityEntry& entry) {
   for (const StabilityFigure& figure : entry.result.figures)
     html += fmt::format(
         "<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number interval\">{}</td><td>{}</td>"
-        "<td class=\"{}\">{}</td></tr>\n",
+        "<td class=\"{} verdict\">{}</td></tr>\n",
         escaped_html(figure.method), escaped_html(figure.quantity), figure_text(figure.measured), interval_text(figure),
         escaped_html(figure.known), verdict_class(figure.verdict()), verdict_words(figure.verdict()));
   return html + "</table></div>\n";
@@ -122,6 +123,25 @@ std::string case_html(const StabilityEntry& entry) {
       escaped_html(what.name), verdicts, escaped_html(what.title), verdict_class(entry.verdict()),
       verdict_words(entry.verdict()), what.row, escaped_html(what.provocation), escaped_html(what.remedy),
       escaped_html(what.source), pictures_html(entry.result.pictures), graphs, figures_html(entry));
+}
+
+/// Each case in a line, with how many of its figures came out how.
+std::string glance_html(const StabilityReport& report) {
+  std::string html =
+      "<details><summary>All cases at a glance</summary><div class=\"card figures\"><table><tr><th>Case</th>"
+      "<th class=\"number\">Row</th><th class=\"number\">Hold</th><th class=\"number\">Fail as known</th>"
+      "<th class=\"number\">Fail</th><th>Verdict</th></tr>\n";
+  for (const StabilityEntry& entry : report.entries) {
+    StabilityCounts counts;
+    for (const StabilityFigure& figure : entry.result.figures) counts.add(figure.verdict());
+    html += fmt::format(
+        "<tr><td><a href=\"#{}\">{}</a></td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
+        "<td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"{} verdict\">{}</td></tr>\n",
+        escaped_html(entry.grouped.what.name), escaped_html(entry.grouped.what.title), entry.grouped.what.row,
+        counts.holds, counts.fails_as_known, counts.fails, verdict_class(entry.verdict()),
+        verdict_words(entry.verdict()));
+  }
+  return html + "</table></div></details>\n";
 }
 
 std::string count_html(std::size_t count, const char* style, const char* words) {
@@ -176,7 +196,7 @@ std::string stability_page(const StabilityReport& report, const std::vector<Page
   page.subtitle = fmt::format("Where methods of rendering fail, by how much, and what helps. {}, at {:.0f} % effort.",
                               counts_text(report), 100 * report.effort);
   page.style = kStabilityStyle;
-  page.body = counts_html(report) + "<nav>" + links + "</nav>\n" + sections +
+  page.body = counts_html(report) + "<nav>" + links + "</nav>\n" + glance_html(report) + sections +
               "<div class=\"tools\"><button data-verdict=\"\">All</button><button data-verdict=\"fails\">Fails</button>"
               "<button data-verdict=\"known\">Fails as known</button><button data-verdict=\"holds\">Holds</button>"
               "<input type=\"search\" placeholder=\"Search cases\" aria-label=\"Search cases\"></div>\n" +

@@ -73,6 +73,9 @@ std::string figure_text(double value) {
 std::string interval_text(const StabilityFigure& figure) {
   if (figure.low == figure.high) return figure_text(figure.low);
   if (std::isinf(figure.high)) return "at least " + figure_text(figure.low);
+  const double middle = (figure.low + figure.high) / 2, half = (figure.high - figure.low) / 2;
+  // Where both ends look alike in four digits.
+  if (half < 1e-3 * std::abs(middle)) return fmt::format("{} \u00b1 {:.1e}", figure_text(middle), half);
   return fmt::format("[{}, {}]", figure_text(figure.low), figure_text(figure.high));
 }
 

@@ -14,7 +14,7 @@ std::string_view verdict_words(StabilityVerdict verdict);
 /// A figure in the fewest digits that tell it: four significant ones, counts whole, "not measured" for NaN.
 std::string figure_text(double value);
 
-/// Where a figure must lie: "[0, 1e-6]"; "0" where that is one number.
+/// Where a figure must lie: "[0, 1e-6]", "1 ± 1.0e-06"; "0" where that is one number.
 std::string interval_text(const StabilityFigure& figure);
 
 /// "no-offsets, not-robust"; empty: none.

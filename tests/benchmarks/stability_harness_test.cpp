@@ -94,6 +94,22 @@ TEST(StabilityHarness, TablesNameCaseMethodFigureAndVerdict) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+TEST(StabilityHarness, FiguresAndIntervalsAreToldInFewDigits) {
+  EXPECT_EQ(figure_text(0), "0");
+  EXPECT_EQ(figure_text(3445), "3445");
+  EXPECT_EQ(figure_text(1.23456e-5), "1.235e-05");
+  EXPECT_EQ(figure_text(std::numeric_limits<double>::quiet_NaN()), "not measured");
+  const auto interval = [](double low, double high) {
+    StabilityFigure figure;
+    figure.low = low, figure.high = high;
+    return interval_text(figure);
+  };
+  EXPECT_EQ(interval(0, 0), "0");
+  EXPECT_EQ(interval(0, 0.25), "[0, 0.25]");
+  EXPECT_EQ(interval(2 - 0x1p-20, 2 + 0x1p-20), "2 \u00b1 9.5e-07");
+  EXPECT_EQ(interval(3, std::numeric_limits<double>::infinity()), "at least 3");
+}
+
 TEST(StabilityHarness, JsonHoldsEveryFigureAndNullForWhatIsNone) {
   const auto json = nlohmann::json::parse(stability_json(
       run_of({made_up("good", holding_case), made_up("nan", unmeasured_case), made_up("broken", throwing_case)},
@@ -118,10 +134,10 @@ TEST(StabilityHarness, PagesHoldPicturesGraphsVerdictsAndFurtherSections) {
   const StabilityReport report =
       run_of({made_up("good", holding_case), made_up("broken", throwing_case, "Another group")});
   const std::string page = stability_page(report, {{"maps", "Maps & more", "<p>here</p>"}});
-  for (const char* part :
-       {"id=\"good\"", "data:image/png;base64,", "two pixels", "<svg", "A graph", "method &lt;1&gt;",
-        "The case ended early: no &lt;mesh&gt;", "Another group", "<a href=\"#maps\">Maps &amp; more</a>",
-        "<p>here</p>", "class=\"known\">fails as known", "class=\"chip fails\">fails"})
+  for (const char* part : {"id=\"good\"", "data:image/png;base64,", "two pixels", "<svg", "A graph", "method &lt;1&gt;",
+                           "The case ended early: no &lt;mesh&gt;", "Another group", "All cases at a glance",
+                           "<a href=\"#maps\">Maps &amp; more</a>", "<p>here</p>", "class=\"known\">fails as known",
+                           "class=\"chip fails\">fails"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   EXPECT_EQ(page.find("were planted"), std::string::npos);
   EXPECT_NE(stability_page(run_of({}, {true, false})).find("were planted"), std::string::npos);
