@@ -46,7 +46,7 @@ TEST(StabilityFacets, EveryFigureIsAsExpected) {
 
 TEST(StabilityFacets, FiguresDoNotDependOnThreads) {
   std::vector<GroupedCase> cases;
-  for (const char* name : {"gouraud-flicker", "shadow-terminator", "mirrored-below-facet", "scanline-rotation"})
+  for (const char* name : {"gouraud-flicker", "turning-facets", "mirrored-below-facet", "scanline-rotation"})
     for (const GroupedCase& grouped : matching_cases(grouped_facet_cases(), name)) cases.push_back(grouped);
   ASSERT_EQ(cases.size(), 4u);
   EXPECT_EQ(stability_json(run_facets(cases, 1)), stability_json(run_facets(cases, 3)));

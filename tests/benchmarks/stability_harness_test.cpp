@@ -136,7 +136,7 @@ TEST(StabilityHarness, PagesHoldPicturesGraphsVerdictsAndFurtherSections) {
   const std::string page = stability_page(report, {{"maps", "Maps & more", "<p>here</p>"}});
   for (const char* part : {"id=\"good\"", "data:image/png;base64,", "two pixels", "<svg", "A graph", "method &lt;1&gt;",
                            "The case ended early: no &lt;mesh&gt;", "Another group", "All cases at a glance",
-                           "<a href=\"#maps\">Maps &amp; more</a>", "<p>here</p>", "class=\"known\">fails as known",
+                           "<a href=\"#maps\">Maps &amp; more</a>", "<p>here</p>", "class=\"known verdict\">fails as known",
                            "class=\"chip fails\">fails"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   EXPECT_EQ(page.find("were planted"), std::string::npos);
