@@ -194,12 +194,12 @@ StabilityResult light_from_behind(const StabilityRun& run) {
 
 std::vector<StabilityCase> facet_remedy_cases() {
   return {{17, "mirrored-below-facet", "Interpolated normals mirror rays into their own facet",
-           "A mirror sphere of 16 and 64 sides, one ray a pixel", "Clamp them, or bend normals before (`reflections`)",
+           "A mirror sphere of 16 and 64 sides, one ray a pixel", "Clamp them, or bend normals before (--reflections)",
            "Reshetov, Soupikov and Mark 2010", mirrored_below},
           {18, "shadow-terminator", "False shadows where light grazes a smooth shape",
            "A sphere of 8 to 128 sides in light from the side",
-           "Start shadow rays on the smooth surface (`shadow_terminator: offset`)",
-           "Hanika 2021 (Ray Tracing Gems II, ch. 4)", shadow_terminator},
+           "Start shadow rays on the smooth surface (--terminator offset)", "Hanika 2021 (Ray Tracing Gems II, ch. 4)",
+           shadow_terminator},
           {19, "light-from-behind", "Light through a sheet by its interpolated normal",
            "A thin sheet whose normals lean to a lamp behind it", "Light must be on the facet's own side too",
            "Veach 1997, ch. 5", light_from_behind}};

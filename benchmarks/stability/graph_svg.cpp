@@ -14,7 +14,7 @@ namespace raytree::benchmarks {
 namespace {
 
 // Units of the viewBox.
-constexpr double kGraphWidth = 560, kGraphHeight = 320;
+constexpr double kGraphWidth = 620, kGraphHeight = 320;
 constexpr double kPlotLeft = 70, kPlotRight = 420, kPlotTop = 36, kPlotBottom = 272;
 
 /// Told apart by the color-blind, on light and dark (Okabe and Ito 2008).

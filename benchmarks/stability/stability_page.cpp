@@ -30,7 +30,7 @@ dl { display: grid; grid-template-columns: max-content 1fr; gap: 2px 14px; margi
 dt { color: var(--quiet); } dd { margin: 0; }
 .pictures { display: flex; flex-wrap: wrap; gap: 16px; margin: 0 0 14px; }
 .pictures figure { width: min-content; } .pictures img { display: block; border-radius: 4px; max-width: none; }
-.graph { width: 100%; max-width: 640px; display: block; margin: 0 0 14px; }
+.graph { width: 100%; max-width: 700px; display: block; margin: 0 0 14px; }
 .figures { overflow-x: auto; } .figures th, .figures td { font-size: 14px; }
 .verdict { white-space: nowrap; } summary { cursor: pointer; margin: 14px 0; }
 .interval { color: var(--quiet); white-space: nowrap; }

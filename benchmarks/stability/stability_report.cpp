@@ -74,8 +74,8 @@ std::string interval_text(const StabilityFigure& figure) {
   if (figure.low == figure.high) return figure_text(figure.low);
   if (std::isinf(figure.high)) return "at least " + figure_text(figure.low);
   const double middle = (figure.low + figure.high) / 2, half = (figure.high - figure.low) / 2;
-  // Where both ends look alike in four digits.
-  if (half < 1e-3 * std::abs(middle)) return fmt::format("{} \u00b1 {:.1e}", figure_text(middle), half);
+  // Where both ends look alike in four digits, or but for their sign.
+  if (half < 1e-3 * std::abs(middle) || middle == 0) return fmt::format("{} \u00b1 {:.1e}", figure_text(middle), half);
   return fmt::format("[{}, {}]", figure_text(figure.low), figure_text(figure.high));
 }
 
@@ -88,13 +88,14 @@ std::string planted_text(const StabilityFaults& faults) {
 
 std::string counts_text(const StabilityReport& report) {
   const StabilityCounts figures = report.figures();
-  return fmt::format("{} cases; {} figures: {} hold, {} fail as known, {} fail", report.entries.size(), figures.total(),
-                     figures.holds, figures.fails_as_known, figures.fails);
+  return fmt::format("{} case{}; {} figures: {} hold, {} fail as known, {} fail", report.entries.size(),
+                     report.entries.size() == 1 ? "" : "s", figures.total(), figures.holds, figures.fails_as_known,
+                     figures.fails);
 }
 
 std::string stability_text(const StabilityReport& report) {
-  using Row = std::array<std::string, 6>;
-  std::vector<Row> rows{{"case", "method", "quantity", "measured", "best known", "verdict"}};
+  using TableRow = std::array<std::string, 6>;
+  std::vector<TableRow> rows{{"case", "method", "quantity", "measured", "best known", "verdict"}};
   for (const StabilityEntry& entry : report.entries) {
     const std::string name = entry.grouped.what.name;
     for (const StabilityFigure& figure : entry.result.figures) {
@@ -110,10 +111,10 @@ std::string stability_text(const StabilityReport& report) {
       rows.push_back({name, "", "", "", "", "fails: nothing was measured"});
   }
   std::array<std::size_t, 6> widths{};
-  for (const Row& row : rows)
+  for (const TableRow& row : rows)
     for (std::size_t c = 0; c + 1 < row.size(); ++c) widths[c] = std::max(widths[c], character_count(row[c]));
   std::string text;
-  for (const Row& row : rows) {
+  for (const TableRow& row : rows) {
     for (std::size_t c = 0; c + 1 < row.size(); ++c) text += padded(row[c], widths[c]) + "  ";
     text += row.back() + "\n";
   }

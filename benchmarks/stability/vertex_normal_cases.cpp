@@ -52,6 +52,7 @@ StabilityResult averaged_across_edge(const StabilityRun& run) {
     scene.cameras[0].height = 2.6;
     scene.lights = {sunlight({-0.3, -0.4, -1})};
     scene.ambient = Rgb(0.1f);
+    scene.materials[0].diffuse = Rgb(0.7f);
     add_picture(result, run, caption, std::move(scene), 220, 180);
   }
   return result;
@@ -205,7 +206,7 @@ std::vector<StabilityCase> vertex_normal_cases() {
        "Weigh facets by their angle at the vertex", "Gouraud 1971, p. 30 and fig. 17; Thuermer and Wuethrich 1998",
        weighted_normals},
       {13, "wrong-normal-dent", "A wrong normal paints a dent", "One vertex normal of a flat plate leans by 30 degrees",
-       "Normals made of the facets (`smoothing`)", "Gouraud 1971, fig. 12", painted_dent},
+       "Normals made of the facets (smoothing)", "Gouraud 1971, fig. 12", painted_dent},
       {14, "scanline-rotation", "Interpolation along scan lines depends on rotation",
        "A square whose corners are 1, 0, 1, 0 turns about its middle",
        "Bilinear in the quad's own parameters, or over fixed triangles", "Phong 1973, sec. I.2; Gouraud 1971, fig. 12",

@@ -107,6 +107,7 @@ TEST(StabilityHarness, FiguresAndIntervalsAreToldInFewDigits) {
   EXPECT_EQ(interval(0, 0), "0");
   EXPECT_EQ(interval(0, 0.25), "[0, 0.25]");
   EXPECT_EQ(interval(2 - 0x1p-20, 2 + 0x1p-20), "2 \u00b1 9.5e-07");
+  EXPECT_EQ(interval(-0x1p-20, 0x1p-20), "0 ± 9.5e-07");
   EXPECT_EQ(interval(3, std::numeric_limits<double>::infinity()), "at least 3");
 }
 
@@ -136,8 +137,8 @@ TEST(StabilityHarness, PagesHoldPicturesGraphsVerdictsAndFurtherSections) {
   const std::string page = stability_page(report, {{"maps", "Maps & more", "<p>here</p>"}});
   for (const char* part : {"id=\"good\"", "data:image/png;base64,", "two pixels", "<svg", "A graph", "method &lt;1&gt;",
                            "The case ended early: no &lt;mesh&gt;", "Another group", "All cases at a glance",
-                           "<a href=\"#maps\">Maps &amp; more</a>", "<p>here</p>", "class=\"known verdict\">fails as known",
-                           "class=\"chip fails\">fails"})
+                           "<a href=\"#maps\">Maps &amp; more</a>", "<p>here</p>",
+                           "class=\"known verdict\">fails as known", "class=\"chip fails\">fails"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   EXPECT_EQ(page.find("were planted"), std::string::npos);
   EXPECT_NE(stability_page(run_of({}, {true, false})).find("were planted"), std::string::npos);
