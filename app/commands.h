@@ -15,5 +15,6 @@ int bench_command(const Words& words);
 int convert_command(const Words& words);
 int validate_command(const Words& words);
 int ray_command(const Words& words);
+int stability_command(const Words& words);
 
 }  // namespace raytree::app

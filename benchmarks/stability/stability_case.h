@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/embree_intersector.h"
@@ -65,9 +66,21 @@ struct StabilityPicture {
   DisplayImage image;
 };
 
+/// A figure over a knob, for the page; both axes logarithmic, points that are not positive are left out.
+struct StabilityGraph {
+  struct Line {
+    std::string name;
+    std::vector<std::pair<double, double>> points;
+    bool predicted = false;  ///< drawn dashed
+  };
+  std::string title, x_label, y_label;
+  std::vector<Line> lines;
+};
+
 struct StabilityResult {
   std::vector<StabilityFigure> figures;
   std::vector<StabilityPicture> pictures;
+  std::vector<StabilityGraph> graphs;
 };
 
 struct StabilityCase {

@@ -1,0 +1,160 @@
+// `raytree stability`: runs the catalogue of failures and says which methods hold.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/exit_status.h"
+#include "app/interruption.h"
+#include "app/messages.h"
+#include "app/progress.h"
+#include "app/render_options.h"
+#include "app/suggestion.h"
+#include "benchmarks/stability/stability_page.h"
+#include "benchmarks/stability/stability_report.h"
+
+namespace raytree::app {
+namespace {
+
+using benchmarks::GroupedCase;
+using benchmarks::StabilityReport;
+
+struct StabilityCommandOptions {
+  std::string folder, filter = "*";
+  benchmarks::StabilityFaults faults;
+  double effort = 1;
+  int threads = 0;
+  bool list = false, json = false, quiet = false;
+};
+
+/// Seconds of "90", "90s", "1.5m" or "1h".
+double suite_budget(const std::string& text) {
+  constexpr std::string_view kUnits = "smh";
+  const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+  const double number = parse_real("--budget", unit == std::string_view::npos ? text : text.substr(0, text.size() - 1));
+  if (!(number > 0)) throw usage_error(fmt::format("--budget: \"{}\" is not a time, for example 60s or 2m", text));
+  return number * (unit == 1 ? 60 : unit == 2 ? 3600 : 1);
+}
+
+benchmarks::StabilityFaults parse_faults(const std::vector<std::string>& names) {
+  benchmarks::StabilityFaults faults;
+  for (const std::string& name : names) {
+    if (name == "no-offsets")
+      faults.no_offsets = true;
+    else if (name == "not-robust")
+      faults.not_robust = true;
+    else
+      throw usage_error(fmt::format("--plant: \"{}\" is none of: no-offsets, not-robust{}", name,
+                                    did_you_mean(name, {"no-offsets", "not-robust"})));
+  }
+  return faults;
+}
+
+std::optional<StabilityCommandOptions> parse_stability_options(const Words& words) {
+  StabilityCommandOptions options;
+  std::vector<std::string> faults;
+  std::string threads, budget = "60s";
+  CLI::App command(
+      "Run the catalogue of known failures of rendering methods: each is provoked and measured, with its remedy on and "
+      "off. Exit status 3 when a figure is neither as it should be nor as its paper says.",
+      "raytree stability");
+  command.add_option("-o,--output", options.folder, "Folder for stability.html and stability.json, made if need be")
+      ->type_name("DIR");
+  command.add_option("--filter", options.filter, "Run the cases of these names alone, e.g. 'gouraud-*'")
+      ->type_name("GLOB");
+  command.add_flag("--list", options.list, "List the cases and run none");
+  command.add_flag("--json", options.json, "Print JSON in place of the table");
+  command
+      .add_option("--budget", budget, "Time for the whole suite, e.g. 20s or 1m; default: 60s, which is full effort")
+      ->type_name("TIME");
+  command
+      .add_option("--plant", faults,
+                  "Plant a fault to see that the suite notices: no-offsets: rays start where they hit; not-robust: "
+                  "edges leak; repeatable")
+      ->type_name("FAULT");
+  command.add_option("--threads", threads, "Threads; default: all. Figures do not depend on it")->type_name("N");
+  command.add_flag("--quiet", options.quiet, "No progress");
+  prepare_usage(command);
+  if (!parse_usage(command, words)) return std::nullopt;
+  options.faults = parse_faults(faults);
+  options.effort = benchmarks::stability_effort(suite_budget(budget));
+  options.threads = parse_threads(threads);
+  if (options.folder.empty() && !options.list)
+    throw usage_error("no output: add -o DIR, a folder for the page, for example -o stability");
+  return options;
+}
+
+std::string list_text(const std::vector<GroupedCase>& cases) {
+  std::size_t width = 0;
+  for (const GroupedCase& grouped : cases) width = std::max(width, std::string_view(grouped.what.name).size());
+  std::string text;
+  for (const GroupedCase& grouped : cases)
+    text += fmt::format("{:<{}}  row {:>2}  {}\n", grouped.what.name, width, grouped.what.row, grouped.what.title);
+  return text;
+}
+
+/// Throws Error (failure) where no folder can be made of that name.
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw Error(ErrorKind::failure, {}, fmt::format("{}: cannot make this folder: {}", folder, error.message()));
+}
+
+StabilityReport measured(const StabilityCommandOptions& options, const std::vector<GroupedCase>& cases,
+                         Progress& progress, const Interruption& interruption) {
+  benchmarks::StabilityOptions run;
+  run.run.faults = options.faults;
+  run.run.effort = options.effort;
+  run.run.stop = &interruption.stop();
+  run.on_case = [&](const benchmarks::StabilityCase& done, std::size_t count, std::size_t total) {
+    progress.phase(fmt::format("{} of {}: {}", count, total, done.name));
+  };
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(options.threads));
+  tbb::task_arena arena(options.threads);
+  StabilityReport report;
+  arena.execute([&] { report = run_stability(cases, run); });
+  return report;
+}
+
+void write_stability(const std::string& folder, const StabilityReport& report, const std::string& json) {
+  make_folder(folder);
+  const std::string page = benchmarks::stability_page(report);
+  const std::filesystem::path path(folder);
+  write_file_atomically((path / "stability.html").string(), page.data(), page.size());
+  write_file_atomically((path / "stability.json").string(), json.data(), json.size());
+}
+
+}  // namespace
+
+int stability_command(const Words& words) {
+  const std::optional<StabilityCommandOptions> options = parse_stability_options(words);
+  if (!options) return kSuccess;
+  const std::vector<GroupedCase> cases = benchmarks::matching_cases(benchmarks::stability_cases(), options->filter);
+  if (cases.empty())
+    throw usage_error(
+        fmt::format("--filter: no case is named \"{}\"; raytree stability --list names them", options->filter));
+  if (options->list) {
+    print_result(list_text(cases));
+    return kSuccess;
+  }
+  make_folder(options->folder);
+  Progress progress(options->quiet ? ProgressMode::none : ProgressMode::automatic);
+  const Interruption interruption([&progress] { progress.abandon(); });
+  const StabilityReport report = measured(*options, cases, progress, interruption);
+  progress.clear();
+  if (!report.complete) {
+    print_message("raytree: interrupted");
+    return kSignalBase + interruption.signal();
+  }
+  const std::string json = benchmarks::stability_json(report);
+  write_stability(options->folder, report, json);
+  print_result(options->json ? json : benchmarks::stability_text(report));
+  return report.figures().fails > 0 ? kFallsShort : kSuccess;
+}
+
+}  // namespace raytree::app

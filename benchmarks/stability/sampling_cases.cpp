@@ -1,0 +1,7 @@
+#include "benchmarks/stability/stability_case.h"
+
+namespace raytree::benchmarks {
+
+std::vector<StabilityCase> sampling_cases() { return {}; }
+
+}  // namespace raytree::benchmarks
