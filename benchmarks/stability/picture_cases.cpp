@@ -1,5 +1,6 @@
 // Rows 59 to 65: numbers on their way to a file and to a display, and pictures that must not depend on who made them.
 #include <stdlib.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <Imath/half.h>
@@ -73,7 +74,7 @@ StabilityResult half_overflow(const StabilityRun&) {
   result.figures.push_back(held("half, clamped", "largest value read back", double(largest), double(kLargestHalf),
                                 double(kLargestHalf), "65504, the largest half"));
   result.figures.push_back(held("half, clamped", "values counted as clamped",
-                                static_cast<double>(half_report.half_clamped), 9, 9, "3 in each of 3 channels"));
+                                static_cast<double>(half_report.half_clamped), 12, 12, "4 in each of 3 channels"));
   result.figures.push_back(known_failure("half", "1e-8 read back", double(plane(half)[5]), 0, 0,
                                          "0: below half of 2^-24, the least half"));
   result.figures.push_back(held("float32, the default", "values read back that differ in any bit", changed, 0, 0, "0"));
@@ -222,8 +223,8 @@ StabilityResult fireflies(const StabilityRun& run) {
   result.figures.push_back(known_failure("pixels clamped to 2", "mean of the picture / the lamp's light",
                                          clamped / double(pixels) / truth, expected - clamped_noise,
                                          best + clamped_noise, "2 (1 - exp(-N p)) / (p L): the light is lost"));
-  for (const int samples : {16, 1024})
-    add_picture(run, result, samples == 16 ? "16 facets a sample: fireflies" : "1024 facets a sample",
+  for (const int samples : {16, 128})
+    add_picture(run, result, samples == 16 ? "16 facets a sample: fireflies" : "128 facets a sample",
                 lamp_in_rough_mirror(160, kRoughness, samples, kLamp, kAngle));
   return result;
 }
@@ -254,7 +255,10 @@ std::string bits_of(const Film& film) {
   return bits;
 }
 
+constexpr std::size_t kMostThreads = 4;
+
 StabilityResult coincident_surfaces(const StabilityRun& run) {
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, kMostThreads);
   StabilityResult result;
   for (const char* const hierarchy : {"balanced", "compact"}) {
     std::set<std::string> pictures;
@@ -276,6 +280,7 @@ StabilityResult coincident_surfaces(const StabilityRun& run) {
 }
 
 StabilityResult order_of_sums(const StabilityRun& run) {
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, kMostThreads);
   StabilityResult result;
   const Scene scene = prepared_for(run, coincident_meshes());
   std::set<std::string> pictures;

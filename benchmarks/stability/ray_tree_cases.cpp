@@ -190,8 +190,8 @@ StabilityResult exponential_tree(const StabilityRun& run) {
   const double levels = std::ceil(std::log2(1 / kDefaultCutoff));
   result.figures.push_back(held("cutoff 1/1020", "rays of one sample", rays(cut), 1, std::ldexp(1.0, int(levels) + 1) - 1,
                                 "2^11 - 1: levels until .5^L is below the cutoff"));
-  const double lost = double(color_at(whole.film, 0, 0).g) - double(color_at(cut.film, 0, 0).g);
-  const double rounding = all * 0x1p-24;
+  // Level L has 2^(L-1) rays of weight .25^(L-1), each of which meets the radiance .5.
+  const double lost = 1 - std::ldexp(1.0, -depth) - double(color_at(cut.film, 0, 0).g), rounding = rays(cut) * 0x1p-24;
   result.figures.push_back(held("cutoff 1/1020", "light lost", lost, -rounding, kDefaultCutoff + rounding,
                                 "at most the cutoff"));
   return result;

@@ -61,7 +61,7 @@ double chance_between_points(double r) {
 
 StabilityResult small_objects(const StabilityRun& run) {
   StabilityResult result;
-  const int blocks = scaled(run, 80, 20);
+  const int blocks = scaled(run, 64, 20);
   SphereField field = sphere_field(blocks);
   const auto count = static_cast<double>(field.radii.size());
   SceneDescription plain = field.scene;
@@ -87,12 +87,8 @@ StabilityResult small_objects(const StabilityRun& run) {
   const double noise = 4 * std::sqrt(variance) / area;
   result.figures.push_back(held("Whitted's least radius and areas", "area seen / pi r^2", sum / area, 1 - noise, 1 + noise,
                                 "1, four deviations of leaves on the rims"));
-  for (const auto method : {Antialiasing::Method::none, Antialiasing::Method::whitted}) {
-    SceneDescription scene = sphere_field(40).scene;
-    scene.render.antialias = {method, 1};
-    add_picture(run, result, method == Antialiasing::Method::none ? "A sample a pixel" : "None is lost",
-                std::move(scene));
-  }
+  if (run.pictures)
+    result.pictures = {picture_of("A sample at each pixel's center", at_centers), picture_of("None is lost", adaptive)};
   return result;
 }
 
@@ -131,7 +127,7 @@ MirroredField mirrored_field(int blocks, double area, int minimum_level) {
 
 StabilityResult mirrored_objects(const StabilityRun& run) {
   StabilityResult result;
-  const int blocks = scaled(run, 32, 12);
+  const int blocks = scaled(run, 40, 12);
   constexpr double kArea = 0.15;
   for (const int minimum_level : {0, 3}) {
     MirroredField field = mirrored_field(blocks, kArea, minimum_level);
@@ -139,6 +135,10 @@ StabilityResult mirrored_objects(const StabilityRun& run) {
     double lost = 0;
     for (const auto& [column, row] : field.blocks) lost += covered_in_block(film, column, row) <= 0;
     const auto count = static_cast<double>(field.blocks.size());
+    if (run.pictures)
+      result.pictures.push_back(picture_of(minimum_level == 0 ? "Lamps in a mirror ball, least radius alone"
+                                                              : "Lamps in a mirror ball, minimum_level 3",
+                                           film));
     if (minimum_level == 0)
       result.figures.push_back(known_failure("least radius alone", "share of mirrored lamps of .15 pixels lost",
                                              lost / count, 1 - kArea - share_noise(kArea, count),
@@ -148,9 +148,6 @@ StabilityResult mirrored_objects(const StabilityRun& run) {
       result.figures.push_back(held("minimum_level 3", "share of mirrored lamps of .15 pixels lost", lost / count, 0, 0,
                                     "0: samples 1/8 apart, images at least .115 in radius"));
   }
-  for (const int minimum_level : {0, 3})
-    add_picture(run, result, minimum_level == 0 ? "Lamps in a mirror ball, least radius alone" : "minimum_level 3",
-                mirrored_field(40, kArea, minimum_level).scene);
   return result;
 }
 
@@ -178,9 +175,9 @@ StabilityResult thin_strip(const StabilityRun& run) {
   double worst_column = 0, least_column = 1, plain_columns = 0, worst_mean = 0;
   int longest_gap = 0;
   const double expected = kWidth * std::sqrt(1 + kSlope * kSlope);
-  const int shifts = scaled(run, 16, 4);
-  for (int i = 0; i < shifts; ++i) {
-    const double shift = (i + 0.37) / shifts;
+  constexpr int kShifts = 16;
+  for (int i = 0; i < kShifts; ++i) {
+    const double shift = (i + 0.37) / kShifts;
     const Film plain = rendered_for(run, strip_scene(kWidth, kSlope, shift, false)).film,
                ours = rendered_for(run, strip_scene(kWidth, kSlope, shift, true)).film;
     int gap = 0;
@@ -199,7 +196,7 @@ StabilityResult thin_strip(const StabilityRun& run) {
   }
   // Of 50 heights a fiftieth apart, a strip of a tenth meets five; one more or less by where it begins.
   result.figures.push_back(known_failure("a sample at each pixel's center", "share of columns that a strip of .1 shows in",
-                                         plain_columns / (shifts * kColumns), 4.0 / 50, 6.0 / 50,
+                                         plain_columns / (kShifts * kColumns), 4.0 / 50, 6.0 / 50,
                                          ".1: it is dashes, and vanishes from nine frames in ten"));
   result.figures.push_back(known_failure("a sample at each pixel's center", "longest gap in the strip, pixels",
                                          longest_gap, 44, 46, "(1 - w) / slope = 45"));
