@@ -43,9 +43,9 @@ inline SceneDescription mirror_plane(int size, double roughness, int samples) {
   return scene;
 }
 
-/// Mirrored directions of a ray onto the plane y = 0, one for each of (2 cells)^2 of a grid over Gaussian slopes up to 6 standard
-/// deviations, weighted by the slopes' density. Facets that the ray cannot meet, or that mirror it below the plane, are
-/// left out.
+/// Mirrored directions of a ray onto the plane y = 0, one for each of (2 cells)^2 of a grid over Gaussian slopes up to
+/// 6 standard deviations, weighted by the slopes' density. Facets that the ray cannot meet, or that mirror it below the
+/// plane, are left out.
 class MirroredDirections {
  public:
   explicit MirroredDirections(const Vec3d& direction, double roughness, int cells = 200) {

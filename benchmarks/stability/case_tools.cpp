@@ -7,13 +7,17 @@ namespace raytree::benchmarks {
 
 StabilityFigure held(std::string method, std::string quantity, double measured, double low, double high,
                      std::string known) {
-  return {std::move(method), std::move(quantity),          measured, low, high, std::move(known),
-          StabilityExpectation::holds};
+  return {std::move(method), std::move(quantity), measured, low, high, std::move(known), StabilityExpectation::holds};
 }
 
 StabilityFigure known_failure(std::string method, std::string quantity, double measured, double low, double high,
                               std::string known) {
-  return {std::move(method), std::move(quantity),          measured, low, high, std::move(known),
+  return {std::move(method),
+          std::move(quantity),
+          measured,
+          low,
+          high,
+          std::move(known),
           StabilityExpectation::fails_as_known};
 }
 

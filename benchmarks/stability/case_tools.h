@@ -1,5 +1,5 @@
-// What the stability cases of scenes share: figures in a line each, scenes prepared with the faults that the run plants,
-// and pictures.
+// What the stability cases of scenes share: figures in a line each, scenes prepared with the faults that the run
+// plants, and pictures.
 #pragma once
 
 #include <string>

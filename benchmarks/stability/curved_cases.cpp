@@ -35,7 +35,7 @@ ShapeSet uneven_sphere(bool shared) {
   if (shared) {
     const PatchSurface surface = surface_of(octants);
     TessellationRates rates = uniform_rates(surface, kFine);
-      for (std::size_t face = 0; face < kSouthern; ++face) {
+    for (std::size_t face = 0; face < kSouthern; ++face) {
       rates.inner[face] = {kCoarse, kCoarse};
       for (const FaceEdge& side : surface.sides(face)) rates.edges[side.edge] = kCoarse;
     }
@@ -111,10 +111,11 @@ StabilityResult uneven_rates(const StabilityRun& run) {
   const ShapeSet apart = uneven_sphere(false), shared = uneven_sphere(true);
   const EmbreeIntersector apart_tracer(apart, run.tracer_options()), shared_tracer(shared, run.tracer_options());
   const std::vector<Vec3d> gap = points_in_the_gap(scaled(run, 20'000, 2'000));
-  result.figures.push_back(known_failure("each side by itself", "rays into the gap between chords of 3 and of 8 that leave",
+  result.figures.push_back(known_failure("each side by itself",
+                                         "rays into the gap between chords of 3 and of 8 that leave",
                                          escaped(apart_tracer, gap, 0.3), 1, 1, "1: a hole (Embree issue 286)"));
-  result.figures.push_back(held("points of an edge shared", "the same rays that leave", escaped(shared_tracer, gap, 0.3), 0,
-                                0, "0"));
+  result.figures.push_back(
+      held("points of an edge shared", "the same rays that leave", escaped(shared_tracer, gap, 0.3), 0, 0, "0"));
   // Off vertices by chance: rows 36 and 37 have those.
   const int count = scaled(run, 200'000, 20'000);
   result.figures.push_back(held("points of an edge shared", "rays at edges that leave",
@@ -176,8 +177,7 @@ StabilityResult patch_spheres(const StabilityRun& run) {
         farthest = std::max(farthest, off(from, along, hit));
         ++aimed, missed += !hit;
         // Past the place by up to four radii, where it may be beside the outline.
-        farthest_beside =
-            std::max(farthest_beside, off(from, along + direction() * (radius / sphere.radius), hit));
+        farthest_beside = std::max(farthest_beside, off(from, along + direction() * (radius / sphere.radius), hit));
       }
   }
   result.figures.push_back(held("spheres about parts", "rays at points of patches that miss", missed / aimed, 0, 0,
@@ -198,8 +198,8 @@ StabilityResult patch_spheres(const StabilityRun& run) {
     const SphereRay ray({1, 1.1, 5}, {0.01, 0.02, -1});
     PatchHit hit;
     const double radius = std::ldexp(whole.radius, -levels) * (1 + 1e-9);
-    const bool found = intersect_patch(flat, ray, whole.inside(ray), std::numeric_limits<double>::infinity(),
-                                       {kUnit, radius}, hit);
+    const bool found =
+        intersect_patch(flat, ray, whole.inside(ray), std::numeric_limits<double>::infinity(), {kUnit, radius}, hit);
     levels_off = std::max(levels_off, found ? std::abs(hit.level - levels) : 99);
   }
   result.figures.push_back(held("spheres about parts", "divisions less log2(R / r), 0 to 19", levels_off, 0, 0, "0"));
@@ -209,18 +209,21 @@ StabilityResult patch_spheres(const StabilityRun& run) {
 }  // namespace
 
 std::vector<StabilityCase> curved_ray_cases() {
-  return {{51, "uneven-rates", "Faces that are cut at different rates", "a sphere whose north has 8 segments an edge, its south 3",
-           "edges have rates and points of their own; off: each side by itself", "Embree issue 286; OpenSubdiv issue 1316",
-           uneven_rates},
-          {66, "patch-spheres", "Whitted's spheres about patches", "random patches, rays at them and beside their outlines",
-           "a least radius of a share of a pixel, and Newton's iteration", "Whitted 1980, sec. 3", patch_spheres}};
+  return {
+      {51, "uneven-rates", "Faces that are cut at different rates",
+       "a sphere whose north has 8 segments an edge, its south 3",
+       "edges have rates and points of their own; off: each side by itself", "Embree issue 286; OpenSubdiv issue 1316",
+       uneven_rates},
+      {66, "patch-spheres", "Whitted's spheres about patches", "random patches, rays at them and beside their outlines",
+       "a least radius of a share of a pixel, and Newton's iteration", "Whitted 1980, sec. 3", patch_spheres}};
 }
 
 std::vector<StabilityCase> curved_cases() {
   std::vector<StabilityCase> all;
   for (const auto part : {degenerate_patch_cases, subdivision_cases, curved_ray_cases})
     for (StabilityCase& one : part()) all.push_back(std::move(one));
-  std::stable_sort(all.begin(), all.end(), [](const StabilityCase& a, const StabilityCase& b) { return a.row < b.row; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const StabilityCase& a, const StabilityCase& b) { return a.row < b.row; });
   return all;
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using namespace samples;
 
-constexpr int kPlaces = 65;  ///< of a singular edge, or one place so many times
+constexpr int kPlaces = 65;          ///< of a singular edge, or one place so many times
 constexpr double kRounding = 1e-12;  ///< degrees; normals in double are off by a few 1e-14
 
 double degrees_apart(const Vec3d& a, const Vec3d& b) { return std::atan2(a.cross(b).length(), a.dot(b)) / kDegree; }
@@ -48,8 +48,8 @@ StabilityFigure finds_none(const char* method, const char* where, const NormalEr
 void add_held(StabilityResult& result, const char* method, const char* where, const NormalError& error) {
   result.figures.push_back(
       held(method, std::string("share of places without a normal, ") + where, error.without, 0, 0, "0"));
-  result.figures.push_back(held(method, std::string("degrees off the limit of normals around, ") + where,
-                                error.worst, 0, kRounding, "0 but for rounding"));
+  result.figures.push_back(held(method, std::string("degrees off the limit of normals around, ") + where, error.worst,
+                                0, kRounding, "0 but for rounding"));
 }
 
 StabilityResult collapsed_edge(const StabilityRun&) {
@@ -62,14 +62,16 @@ StabilityResult collapsed_edge(const StabilityRun&) {
     return Vec3d(base.x, 1, base.z);
   };
   const auto up = [](double) { return Vec3d(0, 1, 0); };
-  result.figures.push_back(finds_none("P_u x P_v", "tip of a cone", outcome(cone, DegenerateNormal::none, tip, around)));
+  result.figures.push_back(
+      finds_none("P_u x P_v", "tip of a cone", outcome(cone, DegenerateNormal::none, tip, around)));
   result.figures.push_back(
       finds_none("P_u x P_v", "pole of a sphere", outcome(octant, DegenerateNormal::none, tip, up)));
   // One normal for the whole tip, (1, 1, -1): off by acos(2 / sqrt 6) at both ends.
   const double one_normal = std::acos(2 / std::sqrt(6.0)) / kDegree;
-  result.figures.push_back(known_failure("Gouraud's boundaries", "degrees off the limit of normals around, tip of a cone",
-                                         outcome(cone, DegenerateNormal::gouraud, tip, around).worst,
-                                         one_normal - 1e-9, one_normal + 1e-9, "35.3 = acos(2 / sqrt 6): one normal for all"));
+  result.figures.push_back(known_failure("Gouraud's boundaries",
+                                         "degrees off the limit of normals around, tip of a cone",
+                                         outcome(cone, DegenerateNormal::gouraud, tip, around).worst, one_normal - 1e-9,
+                                         one_normal + 1e-9, "35.3 = acos(2 / sqrt 6): one normal for all"));
   add_held(result, "first order, as OpenSubdiv", "tip of a cone",
            outcome(cone, DegenerateNormal::first_order, tip, around));
   add_held(result, "limit by power series", "tip of a cone", outcome(cone, DegenerateNormal::limit, tip, around));
@@ -77,7 +79,8 @@ StabilityResult collapsed_edge(const StabilityRun&) {
   return result;
 }
 
-/// x = u (1 - 2 v), y = 2 u v (1 - v), z = u^2: half a bowl whose two boundaries make one straight line through the tip.
+/// x = u (1 - 2 v), y = 2 u v (1 - v), z = u^2: half a bowl whose two boundaries make one straight line through the
+/// tip.
 BezierPatch bowl() {
   Monomials a = no_monomials();
   a[0][1] = {1, 0, 0};
@@ -87,8 +90,8 @@ BezierPatch bowl() {
   return patch_of_monomials(a);
 }
 
-/// x = u, y = (v - 1/2) u^2, z = u + u^2: all curves leave the tip in one direction. On the cylinder z = x + x^2, so the
-/// normal at the tip is (-1, 0, 1).
+/// x = u, y = (v - 1/2) u^2, z = u + u^2: all curves leave the tip in one direction. On the cylinder z = x + x^2, so
+/// the normal at the tip is (-1, 0, 1).
 BezierPatch cusp() {
   Monomials a = no_monomials();
   a[0][1] = {1, 0, 1};
@@ -106,11 +109,12 @@ StabilityResult tangent_boundaries(const StabilityRun&) {
                                       outcome(bowl(), DegenerateNormal::gouraud, tip, up)));
   result.figures.push_back(
       finds_none("Gouraud's boundaries", "a cusp", outcome(cusp(), DegenerateNormal::gouraud, tip, leaning)));
-  result.figures.push_back(finds_none("first order, as OpenSubdiv", "a cusp",
-                                      outcome(cusp(), DegenerateNormal::first_order, tip, leaning)));
+  result.figures.push_back(
+      finds_none("first order, as OpenSubdiv", "a cusp", outcome(cusp(), DegenerateNormal::first_order, tip, leaning)));
   add_held(result, "first order, as OpenSubdiv", "boundaries in one line",
            outcome(bowl(), DegenerateNormal::first_order, tip, up));
-  add_held(result, "limit by power series", "boundaries in one line", outcome(bowl(), DegenerateNormal::limit, tip, up));
+  add_held(result, "limit by power series", "boundaries in one line",
+           outcome(bowl(), DegenerateNormal::limit, tip, up));
   add_held(result, "limit by power series", "a cusp", outcome(cusp(), DegenerateNormal::limit, tip, leaning));
   return result;
 }
@@ -137,13 +141,15 @@ StabilityResult parallel_partials(const StabilityRun&) {
 }  // namespace
 
 std::vector<StabilityCase> degenerate_patch_cases() {
-  constexpr const char* kRemedy = "the first term of the normals' power series toward the inside; off: P_u x P_v, Gouraud's";
-  return {{8, "collapsed-edge", "An edge that is a point", "the tip of a cone and the pole of a sphere, as patches", kRemedy,
-           "Gouraud 1971, p. 27, fig. 10; OpenSubdiv issue 947", collapsed_edge},
-          {9, "tangent-boundaries", "A point where boundaries are tangent", "a bowl and a cusp that end in a tip", kRemedy,
-           "Gouraud 1971, p. 28", tangent_boundaries},
-          {10, "parallel-partials", "Parallel partials at a smooth corner", "P_u and P_v parallel in a corner of a plane",
-           kRemedy, "OpenSubdiv issues 947 and 1352", parallel_partials}};
+  constexpr const char* kRemedy =
+      "the first term of the normals' power series toward the inside; off: P_u x P_v, Gouraud's";
+  return {
+      {8, "collapsed-edge", "An edge that is a point", "the tip of a cone and the pole of a sphere, as patches",
+       kRemedy, "Gouraud 1971, p. 27, fig. 10; OpenSubdiv issue 947", collapsed_edge},
+      {9, "tangent-boundaries", "A point where boundaries are tangent", "a bowl and a cusp that end in a tip", kRemedy,
+       "Gouraud 1971, p. 28", tangent_boundaries},
+      {10, "parallel-partials", "Parallel partials at a smooth corner", "P_u and P_v parallel in a corner of a plane",
+       kRemedy, "OpenSubdiv issues 947 and 1352", parallel_partials}};
 }
 
 }  // namespace raytree::benchmarks

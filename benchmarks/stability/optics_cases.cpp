@@ -111,9 +111,8 @@ StabilityResult index_near_one(const StabilityRun& run) {
   constexpr double kIndex = 1.0001;
   RefractionErrors worst;
   for (const double degrees : {80.0, 85.0, 89.0, 89.9, 89.99, 89.999}) {
-    const auto errors =
-        refraction_errors(incidences(scaled(run, 10'000, 1'000), degrees * kDegree, unsigned(degrees)),
-                          1 / double(static_cast<float>(1 / kIndex)));
+    const auto errors = refraction_errors(incidences(scaled(run, 10'000, 1'000), degrees * kDegree, unsigned(degrees)),
+                                          1 / double(static_cast<float>(1 / kIndex)));
     worst.ours = std::max(worst.ours, errors.ours);
     worst.ours_over_bound = std::max(worst.ours_over_bound, errors.ours_over_bound);
     worst.whitted = std::max(worst.whitted, errors.whitted);
@@ -121,11 +120,12 @@ StabilityResult index_near_one(const StabilityRun& run) {
   // k_f^-2 is a difference of k_n^2 |V'|^2 and |V'|^2 - 1, both up to 3e9 at 89.999 degrees: rounding once to a dozen
   // times, it loses k_n^2 / (k_n^2 - 1) = 5000 of its digits, and P turns by half of that times sin t cos t.
   const double cos_t = std::sqrt(1 - 1 / (kIndex * kIndex)), lost = kIndex * kIndex / (kIndex * kIndex - 1);
-  result.figures.push_back(known_failure("P = k_f (N + V') - N", "radians that P is off, index 1.0001, 80 to 89.999 degrees",
-                                         worst.whitted, kFloatRoundoff * lost * cos_t,
-                                         12 * kFloatRoundoff * 2 * lost * cos_t / 2, "1.05e-5"));
-  result.figures.push_back(held("eta V + (eta cos i - cos t) N", "radians that P is off, index 1.0001, 80 to 89.999 degrees",
-                                worst.ours, 0, kFloatRoundoff * refraction_bound(1, cos_t), "2.1e-6"));
+  result.figures.push_back(
+      known_failure("P = k_f (N + V') - N", "radians that P is off, index 1.0001, 80 to 89.999 degrees", worst.whitted,
+                    kFloatRoundoff * lost * cos_t, 12 * kFloatRoundoff * 2 * lost * cos_t / 2, "1.05e-5"));
+  result.figures.push_back(held("eta V + (eta cos i - cos t) N",
+                                "radians that P is off, index 1.0001, 80 to 89.999 degrees", worst.ours, 0,
+                                kFloatRoundoff * refraction_bound(1, cos_t), "2.1e-6"));
   result.figures.push_back(held("eta V + (eta cos i - cos t) N", "error over its bound", worst.ours_over_bound, 0, 1,
                                 "1: the bound is derived"));
   return result;
@@ -152,8 +152,8 @@ StabilityResult grazing(const StabilityRun& run) {
   }
   result.figures.push_back(known_failure("V' = V / |V.N|", "share of R without a value, V.N = 0",
                                          whitted / double(count), 1, 1, "1: V' is infinite, R infinity over infinity"));
-  result.figures.push_back(held("V - 2 (V.N) N", "share of R and P without a value, V.N = 0", ours / double(count), 0, 0,
-                                "0"));
+  result.figures.push_back(
+      held("V - 2 (V.N) N", "share of R and P without a value, V.N = 0", ours / double(count), 0, 0, "0"));
   result.figures.push_back(held("V - 2 (V.N) N", "|R| - 1", longest, 0, 4 * kFloatRoundoff, "0"));
   // Whole pictures: a row of pixels that looks along a plane, and the outline of a sphere of glass.
   CameraDescription camera = front_camera(2);
@@ -171,13 +171,14 @@ StabilityResult grazing(const StabilityRun& run) {
 }  // namespace
 
 std::vector<StabilityCase> optics_cases() {
-  return {{29, "critical-angle", "Refraction near the critical angle", "rays in glass of 1.5, 1.7e-5 before asin(1/1.5)",
-           "none in single precision; a derived bound; double where less is wanted", "Whitted 1980, sec. 2",
-           critical_angle},
-          {30, "index-near-one", "Refraction where the index hardly changes", "index 1.0001, 80 to 89.999 degrees",
-           "P from unit vectors, without dividing by V.N; off: P as printed", "Whitted 1980, sec. 2", index_near_one},
-          {31, "grazing", "Rays along the surface", "V.N = 0", "R and P from unit vectors; off: V' as printed",
-           "Whitted 1980, sec. 2", grazing}};
+  return {
+      {29, "critical-angle", "Refraction near the critical angle", "rays in glass of 1.5, 1.7e-5 before asin(1/1.5)",
+       "none in single precision; a derived bound; double where less is wanted", "Whitted 1980, sec. 2",
+       critical_angle},
+      {30, "index-near-one", "Refraction where the index hardly changes", "index 1.0001, 80 to 89.999 degrees",
+       "P from unit vectors, without dividing by V.N; off: P as printed", "Whitted 1980, sec. 2", index_near_one},
+      {31, "grazing", "Rays along the surface", "V.N = 0", "R and P from unit vectors; off: V' as printed",
+       "Whitted 1980, sec. 2", grazing}};
 }
 
 }  // namespace raytree::benchmarks

@@ -1,9 +1,9 @@
 // Rows 59 to 65: numbers on their way to a file and to a display, and pictures that must not depend on who made them.
+#include <Imath/half.h>
 #include <stdlib.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include <Imath/half.h>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -59,7 +59,8 @@ StabilityResult half_overflow(const StabilityRun&) {
   result.figures.push_back(known_failure("half as OpenEXR rounds", "of 65519, 65520, 1e30, -7e4: become infinite",
                                          infinite, 3, 3, "from 65520 on all; 65519 becomes 65504"));
   EncodeReport half_report, full_report;
-  const DecodedImage half = written_and_read(film, true, half_report), full = written_and_read(film, false, full_report);
+  const DecodedImage half = written_and_read(film, true, half_report),
+                     full = written_and_read(film, false, full_report);
   const auto plane = [](const DecodedImage& image) -> const std::vector<float>& {
     return image.planes[static_cast<std::size_t>(image.plane_index("R"))];
   };
@@ -75,8 +76,8 @@ StabilityResult half_overflow(const StabilityRun&) {
                                 double(kLargestHalf), "65504, the largest half"));
   result.figures.push_back(held("half, clamped", "values counted as clamped",
                                 static_cast<double>(half_report.half_clamped), 12, 12, "4 in each of 3 channels"));
-  result.figures.push_back(known_failure("half", "1e-8 read back", double(plane(half)[5]), 0, 0,
-                                         "0: below half of 2^-24, the least half"));
+  result.figures.push_back(
+      known_failure("half", "1e-8 read back", double(plane(half)[5]), 0, 0, "0: below half of 2^-24, the least half"));
   result.figures.push_back(held("float32, the default", "values read back that differ in any bit", changed, 0, 0, "0"));
   return result;
 }
@@ -97,7 +98,8 @@ StabilityResult display_values(const StabilityRun&) {
   for (const DisplayChoices& choice : DisplayTransform(options).choices())
     for (const std::string& view : choice.views) {
       const DisplayTransform transform = transform_of(choice.display, view);
-      float rgb[] = {kInfinite, 1, 1, kNotANumber, kNotANumber, kNotANumber, -kInfinite, -kInfinite, 2, -2, 3e38f, -3e38f};
+      float rgb[] = {kInfinite,  1,          1, kNotANumber, kNotANumber, kNotANumber,
+                     -kInfinite, -kInfinite, 2, -2,          3e38f,       -3e38f};
       counted += transform.apply(rgb, 4);
       for (const float v : rgb) bad += !std::isfinite(v);
       float bright[] = {kInfinite, 1, 1, kLargestHalf, 1, 1};
@@ -108,17 +110,20 @@ StabilityResult display_values(const StabilityRun&) {
   result.figures.push_back(held("made finite first", "values that are not finite behind any view", bad, 0, 0, "0"));
   result.figures.push_back(held("made finite first", "infinite red less red of 65504, any view", double(apart), 0, 0,
                                 "0: the brightest there is; unguarded, ACES SDR turns it to 4e-11, black"));
-  result.figures.push_back(held("made finite first", "values counted, a view", double(counted) / views, 6, 6,
-                                "6 of 12 were not finite"));
+  result.figures.push_back(
+      held("made finite first", "values counted, a view", double(counted) / views, 6, 6, "6 of 12 were not finite"));
   float values[] = {kInfinite, kInfinite, kInfinite, kNotANumber, kNotANumber, kNotANumber};
   transform_of("sRGB", "ACES SDR").apply(values, 2);
   result.figures.push_back(held("made finite first", "infinite light as ACES SDR shows it", double(values[0]), 0.99, 1,
                                 "white, 1 but for the curve's shoulder"));
-  result.figures.push_back(held("made finite first", "NaN as ACES SDR shows it, over black", [&] {
-    float black[] = {0, 0, 0};
-    transform_of("sRGB", "ACES SDR").apply(black, 1);
-    return double(values[3] - black[0]);
-  }(), 0, 0, "0"));
+  result.figures.push_back(held(
+      "made finite first", "NaN as ACES SDR shows it, over black",
+      [&] {
+        float black[] = {0, 0, 0};
+        transform_of("sRGB", "ACES SDR").apply(black, 1);
+        return double(values[3] - black[0]);
+      }(),
+      0, 0, "0"));
   return result;
 }
 
@@ -184,8 +189,9 @@ StabilityResult fireflies(const StabilityRun& run) {
   constexpr int kSamples = 16;
   const int size = run.effort < 0.5 ? 32 : 64;
   const Vec3d mirrored = Vec3d(0, 1, -1).normalized();
-  const double chance = MirroredDirections(Vec3d(0, -1, -1).normalized(), kRoughness, 800)
-                            .mean([&](const Vec3d& r) { return r.dot(mirrored) > std::cos(kAngle) ? 1.0 : 0.0; });
+  const double chance = MirroredDirections(Vec3d(0, -1, -1).normalized(), kRoughness, 800).mean([&](const Vec3d& r) {
+    return r.dot(mirrored) > std::cos(kAngle) ? 1.0 : 0.0;
+  });
   const double truth = chance * kLamp;
   const RenderResult rendered = rendered_for(run, lamp_in_rough_mirror(size, kRoughness, kSamples, kLamp, kAngle));
   const auto pixels = std::size_t(size) * std::size_t(size);
@@ -212,11 +218,12 @@ StabilityResult fireflies(const StabilityRun& run) {
                                          scale * (1 - hits) * (1 - noise), scale * (1 - chance) * (1 + noise),
                                          "p (1 - p) L^2 / N over the square of the mean: outliers rule"));
   result.figures.push_back(known_failure("16 facets a sample", "relMSE without the worst thousandth / with it",
-                                         trimmed / all, 0.5, 1 - 1e-3, "below 1 - 1/1000: a few pixels hold the error"));
+                                         trimmed / all, 0.5, 1 - 1e-3,
+                                         "below 1 - 1/1000: a few pixels hold the error"));
   const double sigma = kLamp * std::sqrt(chance / kSamples / double(pixels));
-  result.figures.push_back(held("nothing is clamped", "mean of the picture / the lamp's light", sum / double(pixels) / truth,
-                                1 - 4 * sigma / truth - 0.02, 1 + 4 * sigma / truth + 0.02,
-                                "1: unbiased; four deviations, and quadrature's 1/50"));
+  result.figures.push_back(held("nothing is clamped", "mean of the picture / the lamp's light",
+                                sum / double(pixels) / truth, 1 - 4 * sigma / truth - 0.02,
+                                1 + 4 * sigma / truth + 0.02, "1: unbiased; four deviations, and quadrature's 1/50"));
   // Each hit is worth L / N = 6.25, and clamped 2: of a Poisson number of hits, at least one.
   const double expected = clamp * (1 - std::exp(-hits)) / truth, best = clamp * hits / truth;
   const double clamped_noise = 4 * clamp * std::sqrt(hits / double(pixels)) / truth + 0.02 * best;
@@ -272,9 +279,10 @@ StabilityResult coincident_surfaces(const StabilityRun& run) {
         pictures.insert(bits_of(render(scene, {}).film));
       });
     }
-    result.figures.push_back(held(std::string(hierarchy) + " hierarchy", "different pictures of coincident meshes, 1 to 4 threads",
-                                  double(pictures.size()), 1, 1,
-                                  "1; the quick hierarchy, taken only where it is asked for, makes 2 (Embree issue 20)"));
+    result.figures.push_back(
+        held(std::string(hierarchy) + " hierarchy", "different pictures of coincident meshes, 1 to 4 threads",
+             double(pictures.size()), 1, 1,
+             "1; the quick hierarchy, taken only where it is asked for, makes 2 (Embree issue 20)"));
   }
   return result;
 }
@@ -323,18 +331,20 @@ StabilityResult denormal_weights(const StabilityRun& run) {
   scene.ambient = Rgb(1);
   scene.materials = {material("mirror", Rgb(1))};
   scene.materials[0].reflection = Rgb(1e-10f);
-  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "mirror"), shape(PlaneShape{{0, 0, 1}, {0, 0, -1}}, "mirror")};
+  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "mirror"),
+                  shape(PlaneShape{{0, 0, 1}, {0, 0, -1}}, "mirror")};
   scene.render.cutoff = 0;
   scene.render.depth = 20;
   const RenderResult rendered = rendered_for(run, std::move(scene));
   result.figures.push_back(known_failure("the processor as it starts", "1e-20 squared counts as a number (1: yes)",
                                          product_is_denormal(), 1, 1, "1: a denormal, a hundred cycles an operation"));
-  result.figures.push_back(held("flushed while tracing", "1e-20 squared counts as a number (1: yes)",
-                                [&] {
-                                  const FlushDenormals flush;
-                                  return product_is_denormal();
-                                }(),
-                                0, 0, "0"));
+  result.figures.push_back(held(
+      "flushed while tracing", "1e-20 squared counts as a number (1: yes)",
+      [&] {
+        const FlushDenormals flush;
+        return product_is_denormal();
+      }(),
+      0, 0, "0"));
   result.figures.push_back(held("flushed while tracing", "levels of mirrors of 1e-10, depth 20, nothing cut",
                                 rendered.statistics.deepest_level, 1, 4,
                                 "4: the fifth level's weight of 1e-40 is none"));
@@ -344,22 +354,22 @@ StabilityResult denormal_weights(const StabilityRun& run) {
 }  // namespace
 
 std::vector<StabilityCase> picture_cases() {
-  return {{59, "half-overflow", "Radiance that 16 bits cannot hold", "65519, 65520, 1e30, -7e4 and 1e-8 to an EXR file",
-           "clamped to 65504 and counted, or float32; off: the conversion of the library", "OpenEXR, half",
-           half_overflow},
-          {60, "display-values", "Infinity and NaN before the view", "infinite, NaN and negative values into every view",
-           "values made finite before OpenColorIO sees them", "OpenColorIO issues 1707 and 1764", display_values},
-          {61, "nan-pixels", "Samples that are no numbers", "a surface half of which reflects NaN, 4 samples a pixel",
-           "bad samples count 0 and are reported; off: summed as they are", "pbrt-v4, integrators.cpp", poisoned_pixels},
-          {62, "fireflies", "Rare bright samples", "a lamp of 100 and .04 radians in a mirror of roughness .2",
-           "none but more facets: nothing is clamped in silence", "relMSE with and without the worst thousandth",
-           fireflies},
-          {63, "coincident-surfaces", "Surfaces in one place", "two meshes of the same triangles, built by 1 to 4 threads",
-           "hierarchies that do not depend on threads", "Embree issue 20", coincident_surfaces},
-          {64, "order-of-sums", "Pictures by any number of threads", "1 to 4 threads, tiles in three orders",
-           "a fixed order of sums a pixel; off: as samples are ready", "pbrt-v4 issue 85", order_of_sums},
-          {65, "denormals", "Weights near nothing", "mirrors of 1e-10 between each other",
-           "denormals flushed on every thread that traces", "Embree's readme", denormal_weights}};
+  return {
+      {59, "half-overflow", "Radiance that 16 bits cannot hold", "65519, 65520, 1e30, -7e4 and 1e-8 to an EXR file",
+       "clamped to 65504 and counted, or float32; off: the conversion of the library", "OpenEXR, half", half_overflow},
+      {60, "display-values", "Infinity and NaN before the view", "infinite, NaN and negative values into every view",
+       "values made finite before OpenColorIO sees them", "OpenColorIO issues 1707 and 1764", display_values},
+      {61, "nan-pixels", "Samples that are no numbers", "a surface half of which reflects NaN, 4 samples a pixel",
+       "bad samples count 0 and are reported; off: summed as they are", "pbrt-v4, integrators.cpp", poisoned_pixels},
+      {62, "fireflies", "Rare bright samples", "a lamp of 100 and .04 radians in a mirror of roughness .2",
+       "none but more facets: nothing is clamped in silence", "relMSE with and without the worst thousandth",
+       fireflies},
+      {63, "coincident-surfaces", "Surfaces in one place", "two meshes of the same triangles, built by 1 to 4 threads",
+       "hierarchies that do not depend on threads", "Embree issue 20", coincident_surfaces},
+      {64, "order-of-sums", "Pictures by any number of threads", "1 to 4 threads, tiles in three orders",
+       "a fixed order of sums a pixel; off: as samples are ready", "pbrt-v4 issue 85", order_of_sums},
+      {65, "denormals", "Weights near nothing", "mirrors of 1e-10 between each other",
+       "denormals flushed on every thread that traces", "Embree's readme", denormal_weights}};
 }
 
 }  // namespace raytree::benchmarks

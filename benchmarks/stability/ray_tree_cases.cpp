@@ -35,8 +35,8 @@ double series_rounding(double k, double terms) { return (terms + 2) * 0x1p-24 / 
 /// A room between two mirrors, to look at.
 SceneDescription mirror_room(int depth, double cutoff) {
   CameraDescription camera;
-  camera.position = {-0.55, 0.15, 1.6};
-  camera.target = {0.9, -0.2, -0.4};
+  camera.position = {-0.93, 0.1, 0.75};
+  camera.target = {1, -0.2, 0.3};
   camera.field_of_view = 50;
   SceneDescription scene = dark_scene(160, camera);
   scene.image = {240, 160};
@@ -48,9 +48,9 @@ SceneDescription mirror_room(int depth, double cutoff) {
                      material("ball", Rgb(0.8f, 0.25f, 0.1f))};
   scene.materials[1].reflection = Rgb(0.9f, 0.93f, 0.92f);
   scene.lights = {point_light({0.2, 2, 1})};
-  scene.shapes = {shape(PlaneShape{{0, -0.6, 0}, {0, 1, 0}}, "floor"),
-                  shape(PlaneShape{{1, 0, 0}, {-1, 0, 0}}, "mirror"), shape(PlaneShape{{-1, 0, 0}, {1, 0, 0}}, "mirror"),
-                  shape(SphereShape{{0.35, -0.25, 0}, 0.35}, "ball")};
+  scene.shapes = {
+      shape(PlaneShape{{0, -0.6, 0}, {0, 1, 0}}, "floor"), shape(PlaneShape{{1, 0, 0}, {-1, 0, 0}}, "mirror"),
+      shape(PlaneShape{{-1, 0, 0}, {1, 0, 0}}, "mirror"), shape(SphereShape{{0.35, -0.25, 0}, 0.35}, "ball")};
   scene.render.depth = depth;
   scene.render.cutoff = cutoff;
   scene.render.antialias = {Antialiasing::Method::grid, 2};
@@ -92,9 +92,8 @@ StabilityResult tree_truncation(const StabilityRun& run) {
   double worst = 0, least_spare = 1;
   for (const double reflectance : {0.5, 0.8, 0.9, 0.95}) {
     const double share = static_cast<double>(static_cast<float>(reflectance));
-    const RenderResult rendered =
-        rendered_for(run, facing_mirrors(reflectance, 1, 1000, kDefaultCutoff),
-                     {ChannelGroup::color, ChannelGroup::truncation});
+    const RenderResult rendered = rendered_for(run, facing_mirrors(reflectance, 1, 1000, kDefaultCutoff),
+                                               {ChannelGroup::color, ChannelGroup::truncation});
     const double lost = 1 / (1 - share) - color_at(rendered.film, 0, 0).g - series_rounding(share, 200);
     worst = std::max(worst, lost);
     least_spare = std::min(least_spare, color_at(rendered.film, 0, 0, ChannelGroup::truncation).g - lost);
@@ -158,8 +157,8 @@ StabilityResult deep_recursion(const StabilityRun& run) {
                                 "0: there is no recursion; others overflow or abort (MoonRay issue 62)"));
   // Terms of one size: each addition rounds by half an ulp of the sum, and they add up at worst.
   const double exact = depth * double(1e-3f), rounding = 0x1p-24 * depth;
-  result.figures.push_back(held("stack of rays", "light gathered / its sum",
-                                color_at(rendered.film, 0, 0).g / exact, 1 - rounding, 1 + rounding, "1"));
+  result.figures.push_back(held("stack of rays", "light gathered / its sum", color_at(rendered.film, 0, 0).g / exact,
+                                1 - rounding, 1 + rounding, "1"));
   return result;
 }
 
@@ -188,28 +187,30 @@ StabilityResult exponential_tree(const StabilityRun& run) {
   // Light from a level on is at most e (1 + rho + ...) = .5 / (1 - .5) = 1 times the weight .25^L of each of its 2^L
   // rays; an allowance shared out evenly is c 2^-L: all are cut where .5^L <= c, at the latest ten levels down.
   const double levels = std::ceil(std::log2(1 / kDefaultCutoff));
-  result.figures.push_back(held("cutoff 1/1020", "rays of one sample", rays(cut), 1, std::ldexp(1.0, int(levels) + 1) - 1,
+  result.figures.push_back(held("cutoff 1/1020", "rays of one sample", rays(cut), 1,
+                                std::ldexp(1.0, int(levels) + 1) - 1,
                                 "2^11 - 1: levels until .5^L is below the cutoff"));
   // Level L has 2^(L-1) rays of weight .25^(L-1), each of which meets the radiance .5.
   const double lost = 1 - std::ldexp(1.0, -depth) - double(color_at(cut.film, 0, 0).g), rounding = rays(cut) * 0x1p-24;
-  result.figures.push_back(held("cutoff 1/1020", "light lost", lost, -rounding, kDefaultCutoff + rounding,
-                                "at most the cutoff"));
+  result.figures.push_back(
+      held("cutoff 1/1020", "light lost", lost, -rounding, kDefaultCutoff + rounding, "at most the cutoff"));
   return result;
 }
 
 }  // namespace
 
 std::vector<StabilityCase> branching_cases() {
-  return {{24, "tree-truncation", "A tree that ends too early",
-           "one ray between two facing mirrors of reflectance .5 to .95, whose light is a geometric series",
-           "cutting by what a branch can still bring, with a bound kept beside the picture; off: depth alone",
-           "Whitted 1980, p. 345; Hall and Greenberg 1983", tree_truncation},
-          {25, "deep-recursion", "A tree a hundred thousand levels deep",
-           "two facing mirrors that lose nothing, depth 100000",
-           "generations of rays on a stack of their own in place of recursion", "openmoonray issue 62", deep_recursion},
-          {26, "exponential-tree", "A tree that doubles at every level",
-           "parallel panes that reflect and transmit a quarter each, 16 levels",
-           "the cutoff's allowance, divided over children; off: depth alone", "Whitted 1980, sec. 2", exponential_tree}};
+  return {
+      {24, "tree-truncation", "A tree that ends too early",
+       "one ray between two facing mirrors of reflectance .5 to .95, whose light is a geometric series",
+       "cutting by what a branch can still bring, with a bound kept beside the picture; off: depth alone",
+       "Whitted 1980, p. 345; Hall and Greenberg 1983", tree_truncation},
+      {25, "deep-recursion", "A tree a hundred thousand levels deep",
+       "two facing mirrors that lose nothing, depth 100000",
+       "generations of rays on a stack of their own in place of recursion", "openmoonray issue 62", deep_recursion},
+      {26, "exponential-tree", "A tree that doubles at every level",
+       "parallel panes that reflect and transmit a quarter each, 16 levels",
+       "the cutoff's allowance, divided over children; off: depth alone", "Whitted 1980, sec. 2", exponential_tree}};
 }
 
 std::vector<StabilityCase> ray_tree_cases() {

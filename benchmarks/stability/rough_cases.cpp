@@ -114,10 +114,11 @@ StabilityResult facet_noise(const StabilityRun& run) {
                                          error_slope(independent_errors(size * size)), -0.5 - noise, -0.5 + noise,
                                          "-1/2: noise of independent draws"));
   // Even points: -3/4 where what is seen has edges, which the facets that are redrawn make too, down to -1 where it is
-  // smooth. Squares toward the horizon are smaller than the points' spacing, and there even points are independent ones.
+  // smooth. Squares toward the horizon are smaller than the points' spacing, and there even points are independent
+  // ones.
   const auto exponent = [&](bool checker) { return error_slope(rendered_errors(run, size, checker)); };
-  result.figures.push_back(held("Owen-scrambled Sobol points", "exponent of RMSE over facets, gradient", exponent(false),
-                                -1 - noise, -0.75 + noise, "-3/4 to -1: N^(-3/4) at edges"));
+  result.figures.push_back(held("Owen-scrambled Sobol points", "exponent of RMSE over facets, gradient",
+                                exponent(false), -1 - noise, -0.75 + noise, "-3/4 to -1: N^(-3/4) at edges"));
   result.figures.push_back(held("Owen-scrambled Sobol points", "exponent of RMSE over facets, checker", exponent(true),
                                 -0.75 - noise, -0.5, "-3/4 at edges, -1/2 toward the horizon"));
   for (const int samples : {4, 64})
@@ -154,9 +155,10 @@ StabilityResult below_surface(const StabilityRun& run) {
     char quantity[80];
     std::snprintf(quantity, sizeof quantity, "share of R below the surface, %g degrees, sigma %g", known.degrees,
                   known.roughness);
-    result.figures.push_back(known_failure(
-        "facets as they are drawn", quantity, refused / double(points), share - noise, share + noise,
-        known.roughness < 0.15 ? "Q((90 - i) / 2 sigma) = .191, sampled .193" : "Q((90 - i) / 2 sigma) = .095, sampled .100"));
+    result.figures.push_back(known_failure("facets as they are drawn", quantity, refused / double(points),
+                                           share - noise, share + noise,
+                                           known.roughness < 0.15 ? "Q((90 - i) / 2 sigma) = .191, sampled .193"
+                                                                  : "Q((90 - i) / 2 sigma) = .095, sampled .100"));
     worst_mean = std::max(worst_mean, std::abs(mean - truth.mean([](const Vec3d& r) { return r.y; })));
     allowed = std::max(allowed, 4 * std::sqrt((square / points - mean * mean) / points));
   }
@@ -172,9 +174,8 @@ std::vector<StabilityCase> rough_cases() {
   return {{27, "facet-noise", "Noise of perturbed normals",
            "a mirror of roughness .2 under a gradient and under a checker, 4 to 256 facets a sample",
            "facets from scrambled even points; off: independent draws", "Whitted 1980, p. 345", facet_noise},
-          {28, "facets-below", "Perturbed rays that go below the surface",
-           "roughness .1 seen at 80 degrees, .2 at 60", "facets that do not serve are redrawn; off: as they come",
-           "Whitted 1980, sec. 2", below_surface}};
+          {28, "facets-below", "Perturbed rays that go below the surface", "roughness .1 seen at 80 degrees, .2 at 60",
+           "facets that do not serve are redrawn; off: as they come", "Whitted 1980, sec. 2", below_surface}};
 }
 
 }  // namespace raytree::benchmarks

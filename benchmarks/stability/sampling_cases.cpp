@@ -1,5 +1,5 @@
-// Rows 20 to 23: what falls between samples. White things on black, one pixel a unit: a pixel's radiance is the share of
-// it that they cover.
+// Rows 20 to 23: what falls between samples. White things on black, one pixel a unit: a pixel's radiance is the share
+// of it that they cover.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -71,7 +71,8 @@ StabilityResult small_objects(const StabilityRun& run) {
   const Film adaptive = rendered_for(run, std::move(field.scene)).film;
   double lost_plain = 0, lost = 0, area = 0, sum = 0, chance = 0, variance = 0;
   for (int i = 0; i < blocks * blocks; ++i) {
-    const double r = field.radii[static_cast<std::size_t>(i)], here = covered_in_block(adaptive, i % blocks, i / blocks);
+    const double r = field.radii[static_cast<std::size_t>(i)],
+                 here = covered_in_block(adaptive, i % blocks, i / blocks);
     lost_plain += covered_in_block(at_centers, i % blocks, i / blocks) <= 0;
     lost += here <= 0;
     sum += here, area += kPi * r * r;
@@ -82,11 +83,11 @@ StabilityResult small_objects(const StabilityRun& run) {
   result.figures.push_back(known_failure("a sample at each pixel's center", "share of spheres of .05 to 1 pixel lost",
                                          lost_plain / count, chance - share_noise(chance, count),
                                          chance + share_noise(chance, count), "1 - pi r^2 up to r = 1/2"));
-  result.figures.push_back(held("Whitted's least radius and areas", "share of spheres of .05 to 1 pixel lost", lost / count,
-                                0, 0, "0 (Whitted 1980, sec. 3)"));
+  result.figures.push_back(held("Whitted's least radius and areas", "share of spheres of .05 to 1 pixel lost",
+                                lost / count, 0, 0, "0 (Whitted 1980, sec. 3)"));
   const double noise = 4 * std::sqrt(variance) / area;
-  result.figures.push_back(held("Whitted's least radius and areas", "area seen / pi r^2", sum / area, 1 - noise, 1 + noise,
-                                "1, four deviations of leaves on the rims"));
+  result.figures.push_back(held("Whitted's least radius and areas", "area seen / pi r^2", sum / area, 1 - noise,
+                                1 + noise, "1, four deviations of leaves on the rims"));
   if (run.pictures)
     result.pictures = {picture_of("A sample at each pixel's center", at_centers), picture_of("None is lost", adaptive)};
   return result;
@@ -95,7 +96,8 @@ StabilityResult small_objects(const StabilityRun& run) {
 // --- row 21 ---
 
 /// A mirror ball as large as the picture; far lamps behind the eye stand so that each block within .85 of its radius
-/// shows one of them, `area` pixels large: a ball of radius R turns a solid angle w into an area of R^2 w / 4, wherever.
+/// shows one of them, `area` pixels large: a ball of radius R turns a solid angle w into an area of R^2 w / 4,
+/// wherever.
 struct MirroredField {
   SceneDescription scene;
   std::vector<std::pair<int, int>> blocks;  ///< column, row
@@ -119,7 +121,8 @@ MirroredField mirrored_field(int blocks, double area, int minimum_level) {
       if (rho > 0.85) continue;
       const Vec3d normal = Vec3d(x, y, std::sqrt(1 - rho * rho) * ball) / ball;
       const Vec3d mirrored = normal * (2 * normal.z) - Vec3d(0, 0, 1);
-      field.scene.shapes.push_back(shape(SphereShape{normal * ball + mirrored * away, away * std::sin(angle)}, "white"));
+      field.scene.shapes.push_back(
+          shape(SphereShape{normal * ball + mirrored * away, away * std::sin(angle)}, "white"));
       field.blocks.emplace_back(column, row);
     }
   return field;
@@ -136,14 +139,14 @@ StabilityResult mirrored_objects(const StabilityRun& run) {
     for (const auto& [column, row] : field.blocks) lost += covered_in_block(film, column, row) <= 0;
     const auto count = static_cast<double>(field.blocks.size());
     if (run.pictures)
-      result.pictures.push_back(picture_of(minimum_level == 0 ? "Lamps in a mirror ball, least radius alone"
-                                                              : "Lamps in a mirror ball, minimum_level 3",
-                                           film));
+      result.pictures.push_back(picture_of(
+          minimum_level == 0 ? "Lamps in a mirror ball, least radius alone" : "Lamps in a mirror ball, minimum_level 3",
+          film));
     if (minimum_level == 0)
-      result.figures.push_back(known_failure("least radius alone", "share of mirrored lamps of .15 pixels lost",
-                                             lost / count, 1 - kArea - share_noise(kArea, count),
-                                             1 - kArea + share_noise(kArea, count),
-                                             "1 - area: the radius guards what is seen straight (Whitted 1980, p. 347)"));
+      result.figures.push_back(
+          known_failure("least radius alone", "share of mirrored lamps of .15 pixels lost", lost / count,
+                        1 - kArea - share_noise(kArea, count), 1 - kArea + share_noise(kArea, count),
+                        "1 - area: the radius guards what is seen straight (Whitted 1980, p. 347)"));
     else
       result.figures.push_back(held("minimum_level 3", "share of mirrored lamps of .15 pixels lost", lost / count, 0, 0,
                                     "0: samples 1/8 apart, images at least .115 in radius"));
@@ -195,7 +198,8 @@ StabilityResult thin_strip(const StabilityRun& run) {
     worst_mean = std::max(worst_mean, std::abs(mean - expected));
   }
   // Of 50 heights a fiftieth apart, a strip of a tenth meets five; one more or less by where it begins.
-  result.figures.push_back(known_failure("a sample at each pixel's center", "share of columns that a strip of .1 shows in",
+  result.figures.push_back(known_failure("a sample at each pixel's center",
+                                         "share of columns that a strip of .1 shows in",
                                          plain_columns / (kShifts * kColumns), 4.0 / 50, 6.0 / 50,
                                          ".1: it is dashes, and vanishes from nine frames in ten"));
   result.figures.push_back(known_failure("a sample at each pixel's center", "longest gap in the strip, pixels",
@@ -204,8 +208,8 @@ StabilityResult thin_strip(const StabilityRun& run) {
                                 "0 (Phong 1973, VI, leaves it open)"));
   result.figures.push_back(held("Whitted's least radius and areas", "a column less w, over w", worst_column, 0, 1e-3,
                                 "0: weighed by its outline's area, in single precision"));
-  result.figures.push_back(held("Whitted's least radius and areas", "darkest column", least_column, expected * 0.999, 1,
-                                "w: no gap"));
+  result.figures.push_back(
+      held("Whitted's least radius and areas", "darkest column", least_column, expected * 0.999, 1, "w: no gap"));
   for (const bool adaptive : {false, true})
     add_picture(run, result, adaptive ? "Weighed by its area" : "A strip of .1 pixels, a sample a pixel",
                 strip_scene(0.1, kSlope, 0.37, adaptive, 160));
@@ -241,10 +245,10 @@ StabilityResult equal_corners(const StabilityRun& run) {
   const int levels = AdaptiveSampling().levels;
   result.figures.push_back(known_failure("four corners", "a pixel half black whose corners are white, off by",
                                          off(0, false), 0.5, 0.5, "1/2: all that is black (Whitted 1980, fig. 5)"));
-  result.figures.push_back(held("minimum_level 1", "a pixel half black whose corners are white, off by", off(1, false), 0,
-                                largest_edge_error(levels), "2^-levels"));
-  result.figures.push_back(held("filtered pattern", "a pixel half black whose corners are white, off by", off(0, true), 0,
-                                1e-6, "0: its exact mean"));
+  result.figures.push_back(held("minimum_level 1", "a pixel half black whose corners are white, off by", off(1, false),
+                                0, largest_edge_error(levels), "2^-levels"));
+  result.figures.push_back(held("filtered pattern", "a pixel half black whose corners are white, off by", off(0, true),
+                                0, 1e-6, "0: its exact mean"));
   return result;
 }
 
@@ -258,7 +262,8 @@ std::vector<StabilityCase> sampling_cases() {
            "a least level of division; off: the least radius alone", "Whitted 1980, p. 347", mirrored_objects},
           {22, "thin-strip", "A strip thinner than a pixel", "width .1, slope 1/50, in steps through a pixel",
            "the area of its outline; off: centers of pixels", "Phong 1973, VI", thin_strip},
-          {23, "equal-corners", "Four corners that agree and are wrong", "a checker of half a pixel, its corners on the pixel's",
+          {23, "equal-corners", "Four corners that agree and are wrong",
+           "a checker of half a pixel, its corners on the pixel's",
            "a least level of division, or a pattern's exact mean; off: corners alone", "Whitted 1980, fig. 5",
            equal_corners}};
 }

@@ -64,8 +64,8 @@ StabilityResult extraordinary_vertices(const StabilityRun&) {
                                 "Embree .03, .91 at valence 12; library's default 1.38"));
   result.figures.push_back(held("patches isolated to level 6", "beside the vertices off, of the box", beside, 0, 2e-5,
                                 "8.4e-6 at valence 12; level 2: 1.4e-4"));
-  result.figures.push_back(held("patches isolated to level 6", "normals beside the vertices off, degrees", beside_angle, 0,
-                                0.3, ".20 at valence 12; level 2: 1.38"));
+  result.figures.push_back(held("patches isolated to level 6", "normals beside the vertices off, degrees", beside_angle,
+                                0, 0.3, ".20 at valence 12; level 2: 1.38"));
   return result;
 }
 
@@ -92,7 +92,8 @@ StabilityResult semi_sharp_crease(const StabilityRun&) {
         }
     return worst / box_size(cube);
   };
-  result.figures.push_back(held("patches isolated to level 9", "cube with a crease of 2.5 off its refinement, of the box",
+  result.figures.push_back(held("patches isolated to level 9",
+                                "cube with a crease of 2.5 off its refinement, of the box",
                                 farthest(*limit_surface(cube, rules)), 0, 1e-5, "1.6e-6; level 2: 1.4e-2"));
   // Left out, it would be seen: by more than ten times what is allowed, and by less than the whole edge.
   result.figures.push_back(known_failure("crease left out", "cube with a crease of 2.5 off its refinement, of the box",
@@ -111,10 +112,10 @@ StabilityResult infinite_crease(const StabilityRun&) {
   // The corner of a crease is (1, 4, 1) / 6 of the crease's vertices; the top is flat.
   const Vec3d corner = (Vec3d(-1, -1, 1) * 4.0 + Vec3d(1, -1, 1) + Vec3d(-1, 1, 1)) / 6.0;
   const SurfaceSample top = sample_of(*surface, 5, {0, 0}), side = sample_of(*surface, 2, {0, 1});
-  result.figures.push_back(held("limit masks of creases", "corner of a crease off, from either face, of the box",
-                                std::max((Vec3d(top.position) - corner).length(), (Vec3d(side.position) - corner).length()) /
-                                    box_size(cube),
-                                0, kPositionError, "0; Embree 2.4e-4"));
+  result.figures.push_back(
+      held("limit masks of creases", "corner of a crease off, from either face, of the box",
+           std::max((Vec3d(top.position) - corner).length(), (Vec3d(side.position) - corner).length()) / box_size(cube),
+           0, kPositionError, "0; Embree 2.4e-4"));
   result.figures.push_back(held("a normal for each face", "normal of the flat top off at its corner, degrees",
                                 degrees_off(Vec3d(top.normal), {0, 0, 1}), 0, 0.02, "0"));
   const Vec3d mean = unit(Vec3d(top.normal) + Vec3d(side.normal));
@@ -147,8 +148,8 @@ StabilityResult boundary_rules(const StabilityRun&) {
   int wrong = 0;
   const auto inner = limit_surface(grid_cage(4, 4, 0), rules);
   for (std::size_t face = 0; face < 9; ++face) wrong += inner->sides(face).size() != (face == 4 ? 4u : 0u);
-  result.figures.push_back(held("none", "faces of 3 x 3 that have a surface and should not, or the reverse", wrong, 0, 0,
-                                "0: the middle one alone"));
+  result.figures.push_back(held("none", "faces of 3 x 3 that have a surface and should not, or the reverse", wrong, 0,
+                                0, "0: the middle one alone"));
   return result;
 }
 
@@ -220,10 +221,18 @@ StabilityResult bad_topology(const StabilityRun&) {
       [](auto& m, auto&) { m.face_sizes[1] = 0, m.corners.resize(20); },
       [](auto& m, auto&) { m.face_sizes[5] = 0x7fffffff; },
       [](auto& m, auto&) { m.positions[3].y = kNaN; },
-      [](auto&, auto& r) { r.creases = {{{0, 8}, 1}}; },
-      [](auto&, auto& r) { r.creases = {{{0, 1}, -1}}; },
-      [](auto&, auto& r) { r.creases = {{{0, 1}, std::nan("")}}; },
-      [](auto&, auto& r) { r.corners = {{8, 1}}; },
+      [](auto&, auto& r) {
+        r.creases = {{{0, 8}, 1}};
+      },
+      [](auto&, auto& r) {
+        r.creases = {{{0, 1}, -1}};
+      },
+      [](auto&, auto& r) {
+        r.creases = {{{0, 1}, std::nan("")}};
+      },
+      [](auto&, auto& r) {
+        r.corners = {{8, 1}};
+      },
       [](auto&, auto& r) { r.holes = {6}; },
   };
   int accepted = 0, unnamed = 0;
@@ -240,8 +249,8 @@ StabilityResult bad_topology(const StabilityRun&) {
   }
   result.figures.push_back(held("checked before OpenSubdiv sees it", "damaged cages accepted, of 13", accepted, 0, 0,
                                 "0; unchecked, index 1e9 crashes and -7 passes in silence"));
-  result.figures.push_back(held("checked before OpenSubdiv sees it", "refusals that do not name the place", unnamed, 0, 0,
-                                "0"));
+  result.figures.push_back(
+      held("checked before OpenSubdiv sees it", "refusals that do not name the place", unnamed, 0, 0, "0"));
   int refused = 0;
   try {
     check_cage(cube_cage(), {}, {});
@@ -255,20 +264,23 @@ StabilityResult bad_topology(const StabilityRun&) {
 }  // namespace
 
 std::vector<StabilityCase> subdivision_cases() {
-  return {{53, "extraordinary-vertices", "Vertices of 3 to 16 faces", "bumpy paraboloids about a vertex of every valence",
-           "limit masks at vertices, patches isolated to level 6 around", "OpenSubdiv issue 1188", extraordinary_vertices},
-          {54, "semi-sharp-crease", "Creases that soften with depth", "a cube whose top edges are sharp for 2.5 levels",
-           "features isolated deeper than they are sharp; off: the crease left out", "OpenSubdiv issue 1152",
-           semi_sharp_crease},
-          {55, "infinite-crease", "Creases that stay", "a cube whose top edges are infinitely sharp",
-           "normals of each face's own; off: one for both", "OpenSubdiv issues 150 and 1347", infinite_crease},
-          {56, "boundary-rules", "Boundaries and corners", "a single quad, a grid of 3 x 3", "the rule that the scene names",
-           "OpenSubdiv, VtxBoundaryInterpolation", boundary_rules},
-          {57, "non-manifold", "Edges of three faces, vertices of two", "a fan of three quads about an edge; two quads back to back",
-           "such edges are sharp", "OpenSubdiv issue 968", non_manifold},
-          {58, "bad-topology", "Cages that are none", "indices out of range, faces of 0 and 2 corners, NaN, negative sharpness",
-           "refused with the face's number before OpenSubdiv sees them", "OpenSubdiv, Far::TopologyRefinerFactory",
-           bad_topology}};
+  return {
+      {53, "extraordinary-vertices", "Vertices of 3 to 16 faces", "bumpy paraboloids about a vertex of every valence",
+       "limit masks at vertices, patches isolated to level 6 around", "OpenSubdiv issue 1188", extraordinary_vertices},
+      {54, "semi-sharp-crease", "Creases that soften with depth", "a cube whose top edges are sharp for 2.5 levels",
+       "features isolated deeper than they are sharp; off: the crease left out", "OpenSubdiv issue 1152",
+       semi_sharp_crease},
+      {55, "infinite-crease", "Creases that stay", "a cube whose top edges are infinitely sharp",
+       "normals of each face's own; off: one for both", "OpenSubdiv issues 150 and 1347", infinite_crease},
+      {56, "boundary-rules", "Boundaries and corners", "a single quad, a grid of 3 x 3",
+       "the rule that the scene names", "OpenSubdiv, VtxBoundaryInterpolation", boundary_rules},
+      {57, "non-manifold", "Edges of three faces, vertices of two",
+       "a fan of three quads about an edge; two quads back to back", "such edges are sharp", "OpenSubdiv issue 968",
+       non_manifold},
+      {58, "bad-topology", "Cages that are none",
+       "indices out of range, faces of 0 and 2 corners, NaN, negative sharpness",
+       "refused with the face's number before OpenSubdiv sees them", "OpenSubdiv, Far::TopologyRefinerFactory",
+       bad_topology}};
 }
 
 }  // namespace raytree::benchmarks

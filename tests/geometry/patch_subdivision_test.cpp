@@ -1,5 +1,6 @@
-// Whitted's subdivision of patches: how often it divides; closed forms of patches that are spheres. How far from the patch
-// what it reports may lie, and that it never misses, is the stability suite's (benchmarks/stability/curved_cases.cpp).
+// Whitted's subdivision of patches: how often it divides; closed forms of patches that are spheres. How far from the
+// patch what it reports may lie, and that it never misses, is the stability suite's
+// (benchmarks/stability/curved_cases.cpp).
 #include "geometry/patch_subdivision.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
-// Whitted's adaptive sampling against closed forms: how much of a pixel a half-plane and a disc cover; and what it costs
-// beside a regular grid. What falls between samples is the stability suite's (benchmarks/stability/sampling_cases.cpp).
+// Whitted's adaptive sampling against closed forms: how much of a pixel a half-plane and a disc cover; and what it
+// costs beside a regular grid. What falls between samples is the stability suite's
+// (benchmarks/stability/sampling_cases.cpp).
 #include "renderer/adaptive_sampling.h"
 
 #include <gtest/gtest.h>
