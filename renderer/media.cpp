@@ -120,4 +120,20 @@ std::vector<Solid> solids_around(const Scene& scene, const Vec3f& origin, const 
   return left;
 }
 
+std::vector<Solid> solids_around_eye(const Scene& scene, const Vec3f& eye, const Vec3f& forward) {
+  // Off the line of sight by about 20 degrees, in directions that have nothing to do with a scene's axes.
+  const std::vector<Solid> told[3] = {solids_around(scene, eye, forward),
+                                      solids_around(scene, eye, unit(forward + Vec3f(0.223f, 0.179f, -0.247f))),
+                                      solids_around(scene, eye, unit(forward + Vec3f(-0.191f, 0.253f, 0.207f)))};
+  std::vector<Solid> around;
+  for (const std::vector<Solid>& list : told)
+    for (const Solid& solid : list) {
+      const auto holds = [&](const std::vector<Solid>& other) {
+        return std::find(other.begin(), other.end(), solid) != other.end();
+      };
+      if (!holds(around) && std::count_if(std::begin(told), std::end(told), holds) >= 2) around.push_back(solid);
+    }
+  return around;
+}
+
 }  // namespace raytree

@@ -91,4 +91,8 @@ class MediaTable {
 /// there along unit `direction` tells that leaves some of them without having entered; planes are judged by their side.
 std::vector<Solid> solids_around(const Scene& scene, const Vec3f& origin, const Vec3f& direction);
 
+/// The same as three rays tell, of which two must agree: a single one is wrong where it meets two surfaces in one
+/// place, as a view along a plane of symmetry does. `forward`: unit.
+std::vector<Solid> solids_around_eye(const Scene& scene, const Vec3f& eye, const Vec3f& forward);
+
 }  // namespace raytree

@@ -203,7 +203,7 @@ void SampleTracer::State::add_ambient(AmbientAt&& ambient_at) {
 [[gnu::noinline]] void SampleTracer::State::find_eye_media(std::span<const Vec2f> positions) {
   media->clear();
   if (scene.camera.is_perspective()) {
-    if (!knows_eye_solids) eye_solids = solids_around(scene, scene.camera.position(), scene.camera.forward());
+    if (!knows_eye_solids) eye_solids = solids_around_eye(scene, scene.camera.position(), scene.camera.forward());
     knows_eye_solids = true;
     std::fill_n(batch.media, positions.size(), media->set_of(eye_solids));
   } else {

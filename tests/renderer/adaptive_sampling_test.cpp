@@ -1,5 +1,6 @@
-// Whitted's adaptive sampling against closed forms: how much of a pixel a half-plane, a disc, a strip and thousands of
-// small spheres cover; and what it costs beside a regular grid.
+// Whitted's adaptive sampling against closed forms: how much of a pixel a half-plane and a disc cover; and what it
+// costs beside a regular grid. What falls between samples is the stability suite's
+// (benchmarks/stability/sampling_cases.cpp).
 #include "renderer/adaptive_sampling.h"
 
 #include <gtest/gtest.h>
@@ -14,16 +15,6 @@ namespace raytree {
 namespace {
 
 using namespace test;
-
-/// White things on black, whose radiance is their share of the pixel; one pixel is one unit, the frame's middle the
-/// origin.
-SceneDescription white_on_black(int size) {
-  SceneDescription scene = dark_scene(size, front_camera(size));
-  scene.render.antialias.method = Antialiasing::Method::whitted;
-  scene.ambient = Rgb(1);
-  scene.materials = {material("white", Rgb(1))};
-  return scene;
-}
 
 double value_at(const Film& film, int x, int y) { return color_at(film, x, y).r; }
 
@@ -230,29 +221,7 @@ TEST(AdaptiveSampling, ACheckerTowardTheHorizonKeepsItsAreaMean) {
   EXPECT_LT(usual_filtered.samples, fine.samples / 2);
 }
 
-// --- what equal corners hide (catalogue of failures, 23) ---
-
-TEST(AdaptiveSampling, AMinimumLevelFindsWhatEqualCornersHide) {
-  // Stripes one pixel apart: every corner of a pixel is white and all between is black.
-  const auto traced = [](int minimum_level, bool filtered) {
-    SceneDescription scene = white_on_black(16);
-    CheckerPattern stripes;
-    stripes.plane = CheckerPattern::Plane::xy;
-    stripes.even = Rgb(1), stripes.odd = Rgb(0);
-    stripes.size = 0.5;
-    stripes.offset = {-0.25, -0.25};
-    stripes.filtered = filtered;
-    scene.materials = {material("white", stripes)};
-    scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 0, 1}}, "white")};
-    scene.render.adaptive.minimum_level = minimum_level;
-    return rendered(std::move(scene));
-  };
-  EXPECT_EQ(value_at(traced(0, false).film, 8, 8), 1);           // what the corners say
-  EXPECT_NEAR(value_at(traced(0, true).film, 8, 8), 0.5, 1e-6);  // what they say of what they stand for
-  const RenderResult found = traced(1, false);
-  for (int y = 1; y < 15; ++y)
-    for (int x = 1; x < 15; ++x) EXPECT_NEAR(value_at(found.film, x, y), 0.5, largest_edge_error(4)) << x << ", " << y;
-}
+// --- what equal corners hide ---
 
 TEST(AdaptiveSampling, ObjectsAndNormalsOfEqualColorAreToldApart) {
   const auto samples = [](ShapeDescription second) {
@@ -358,83 +327,6 @@ TEST(AdaptiveSampling, LevelZeroTracesTheCornersOfPixels) {
       }
       EXPECT_EQ(value_at(result.film, x, y), inside / 4.0);
     }
-}
-
-// --- objects between the samples ---
-
-/// A strip of `width` along (1, slope), `length` long in x, about the middle.
-std::shared_ptr<PolygonMesh> strip(double width, double slope, double length, double shift = 0) {
-  const Vec3d along = Vec3d(1, slope, 0), across = Vec3d(-slope, 1, 0) / std::sqrt(1 + slope * slope) * (width / 2);
-  const Vec3d a = along * (-length / 2) + Vec3d(0, shift, 0), b = along * (length / 2) + Vec3d(0, shift, 0);
-  return triangles({Vec3f(a - across), Vec3f(b - across), Vec3f(b + across), Vec3f(a + across)}, {0, 1, 2, 0, 2, 3});
-}
-
-TEST(AdaptiveSampling, AThinStripKeepsItsMeanAndDoesNotBreak) {
-  // Catalogue of failures, 22: width .1 pixel, slope 1/50; between samples it vanishes or breaks into dashes.
-  for (const double width : {0.01, 0.05, 0.1, 0.3, 0.8})
-    for (const double shift : {0.0, 0.27, 0.5, 0.83}) {
-      SceneDescription scene = white_on_black(64);
-      scene.shapes = {mesh_shape(strip(width, 1 / 50.0, 100, shift), "white")};
-      const RenderResult result = rendered(std::move(scene));
-      const double expected = width * std::sqrt(1 + 1 / 2500.0);
-      double sum = 0;
-      for (int x = 0; x < 64; ++x) {
-        double column = 0;
-        for (int y = 0; y < 64; ++y) column += value_at(result.film, x, y);
-        sum += column;
-        // Each column of the strip is an edge above and one below, or its area by itself.
-        EXPECT_NEAR(column, expected, width < 0.125 ? 1e-3 * width : 2 * largest_edge_error(4) / 2)
-            << width << " shifted by " << shift << ", column " << x;
-        EXPECT_GT(column, 0);
-      }
-      EXPECT_NEAR(sum / 64, expected, 1.0 / 255) << width;
-    }
-}
-
-/// One sphere in each block of four pixels, nowhere nearer to the block's border than a pixel.
-struct SphereField {
-  SceneDescription scene;
-  std::vector<double> radii;
-  int blocks;
-};
-SphereField sphere_field(int blocks, unsigned seed) {
-  SphereField field{white_on_black(4 * blocks), {}, blocks};
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> place(1, 3), radius(0.05, 1);
-  for (int row = 0; row < blocks; ++row)
-    for (int column = 0; column < blocks; ++column) {
-      field.radii.push_back(radius(random));
-      const Vec3d center(4 * column + place(random) - 2 * blocks, 2 * blocks - 4 * row - place(random), 0);
-      field.scene.shapes.push_back(shape(SphereShape{center, field.radii.back()}, "white"));
-    }
-  return field;
-}
-
-TEST(AdaptiveSampling, NoneOfTenThousandSmallSpheresIsLost) {
-  SphereField field = sphere_field(100, 1980);
-  const RenderResult result = rendered(std::move(field.scene), {ChannelGroup::color});
-  int lost = 0;
-  constexpr int kBins = 5;
-  const double bin_ends[kBins] = {0.1, 0.2, 0.4, 0.7, 1};
-  double covered[kBins] = {}, expected[kBins] = {}, all_covered = 0, all_expected = 0;
-  for (std::size_t i = 0; i < field.radii.size(); ++i) {
-    double sum = 0;
-    for (int y = 0; y < 4; ++y)
-      for (int x = 0; x < 4; ++x)
-        sum += value_at(result.film, static_cast<int>(i % 100) * 4 + x, static_cast<int>(i / 100) * 4 + y);
-    lost += sum <= 0;
-    const double area = kPi * field.radii[i] * field.radii[i];
-    const auto bin = std::lower_bound(bin_ends, bin_ends + kBins, field.radii[i]) - bin_ends;
-    covered[bin] += sum, expected[bin] += area;
-    all_covered += sum, all_expected += area;
-  }
-  EXPECT_EQ(lost, 0);
-  EXPECT_NEAR(all_covered / all_expected, 1, 0.02);
-  RecordProperty("coverage", std::to_string(all_covered / all_expected));
-  for (int bin = 0; bin < kBins; ++bin) {
-    EXPECT_NEAR(covered[bin] / expected[bin], 1, 0.02) << "radii up to " << bin_ends[bin];
-    RecordProperty("coverage_" + std::to_string(bin), std::to_string(covered[bin] / expected[bin]));
-  }
 }
 
 // --- what it costs ---

@@ -224,6 +224,24 @@ TEST(Media, AnEyeInLiquidInGlassKnowsWhereItIs) {
   }
 }
 
+TEST(Media, AnEyeOutsideLooksAlongAPlaneOfSymmetry) {
+  // The line of sight meets both balls in the circle where they cross: of the two surfaces there a ray reports one, and
+  // it leaves what it was not seen to enter.
+  CameraDescription camera;
+  camera.position = {0, 0.5, 4.6};
+  camera.target = {0, -0.1, 0};
+  SceneDescription scene = dark_scene(9, camera);
+  scene.background = ConstantBackground{Rgb(1)};
+  scene.materials = {medium("glass", 1.5, 2), medium("wine", 1.33, 1, Rgb(0.1f, 1.2f, 0.9f))};
+  scene.shapes = {shape(SphereShape{{-0.5, 0, 0}, 0.85}, "glass"), shape(SphereShape{{0.5, 0, 0}, 0.85}, "wine")};
+  const Scene ready = prepared(scene);
+  const Vec3f eye = ready.camera.position(), forward = ready.camera.forward();
+  EXPECT_FALSE(solids_around(ready, eye, forward).empty()) << "the case is none";
+  EXPECT_TRUE(solids_around_eye(ready, eye, forward).empty());
+  // What goes past both is as bright as what is behind.
+  expect_color(color_at(render(ready, {}).film, 0, 0), Rgb(1), 0);
+}
+
 TEST(Media, HalfSpacesAreJudgedByTheirSide) {
   SceneDescription scene = dark_scene(2, front_camera(1));
   scene.materials = {medium("water", 1.33, 1, Rgb(0, 1, 2)), medium("air", 1, 5)};

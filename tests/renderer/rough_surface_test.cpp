@@ -1,13 +1,14 @@
 // Rough surfaces: the points that choose facets, the facets' slopes, which side rays leave to, and what pictures of
-// them must agree with: quadrature over slopes, Phong's highlight, the weights' sum.
+// them must agree with: Phong's highlight, the weights' sum. Quadrature over slopes is the stability suite's
+// (benchmarks/stability/rough_cases.cpp).
 #include "renderer/rough_surface.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <numbers>
 
+#include "benchmarks/samples/rough_mirror.h"
 #include "geometry/angle.h"
 #include "renderer/low_discrepancy.h"
 #include "renderer/scene_reader.h"
@@ -70,75 +71,6 @@ TEST(LowDiscrepancy, DeviatesAreNormal) {
   EXPECT_NEAR(xy / n, 0, four_sigma);
 }
 
-Material rough_mirror(float roughness) {
-  Material material;
-  material.reflection = Rgb(1);
-  material.has_reflection = material.rough = true;
-  material.roughness = roughness;
-  return material;
-}
-
-/// A horizontal surface seen at `degrees` from its normal, which is y.
-ShadingPoint level_point(const Material& material, double degrees, bool leaving = false) {
-  const double angle = degrees * kDegree;
-  SurfacePoint surface;
-  surface.position = Vec3f(0, 0, 0), surface.texture = Vec2f(0, 0);
-  surface.geometric_normal = surface.shading_normal = Vec3f(0, leaving ? -1.0f : 1.0f, 0);
-  return shading_point(surface, Vec3f(Vec3d(std::sin(angle), -std::cos(angle), 0)), material);
-}
-
-/// Sums weight(a, b) f(R) over Gaussian slopes a (along the ray) and b whose facets reflect `direction` above the
-/// plane, and the weights, in double.
-template <class Function>
-double quadrature(const Vec3d& direction, double roughness, double& served, Function&& f) {
-  constexpr int kHalf = 200;
-  double sum = 0, all = 0;
-  served = 0;
-  for (int i = -kHalf; i < kHalf; ++i)
-    for (int k = -kHalf; k < kHalf; ++k) {
-      const double x = (i + 0.5) * 6 / kHalf, z = (k + 0.5) * 6 / kHalf, weight = std::exp(-(x * x + z * z) / 2);
-      const Vec3d facet = unit(Vec3d(-x * roughness, 1, -z * roughness));
-      const Vec3d mirrored = direction - facet * (2 * direction.dot(facet));
-      all += weight;
-      if (direction.dot(facet) >= 0 || mirrored.y <= 0) continue;
-      served += weight;
-      sum += weight * f(mirrored);
-    }
-  sum /= served;
-  served /= all;
-  return sum;
-}
-
-// Catalogue of failures, 28: a perturbed ray goes below the surface with a chance of about Q((90 degrees - i) / 2
-// sigma): .193 at 80 degrees and sigma .1, .100 at 60 and .2, as sampled there.
-TEST(RoughSurface, FacetsThatReflectBelowAreAsManyAsExpectedAndAreRedrawn) {
-  for (const auto& [degrees, roughness, share] : {std::tuple{80.0, 0.1, 0.193}, {60.0, 0.2, 0.100}}) {
-    const Material material = rough_mirror(static_cast<float>(roughness));
-    const ShadingPoint point = level_point(material, degrees);
-    const Vec3f normal(0, 1, 0);
-    constexpr std::uint32_t kPoints = 1 << 16;
-    const TangentFrame frame = tangent_frame(normal);
-    int refused = 0;
-    double height = 0;
-    for (std::uint32_t i = 0; i < kPoints; ++i) {
-      const Vec2f slopes = Vec2f(normal_deviates(low_discrepancy_point(i, 28))) * material.roughness;
-      refused += !facet_serves(point, facet_normal(normal, frame, slopes), 1.5f);
-      const Branches children = rough_branches(point, 1.5f, 28, i, kPoints);
-      ASSERT_GE(children.reflected.y, 0);
-      height += children.reflected.y;
-    }
-    double served;
-    const double mean_height =
-        quadrature(Vec3d(point.direction), roughness, served, [](const Vec3d& mirrored) { return mirrored.y; });
-    // Both the points and the quadrature (cells of .03 sigma) cut the border to under 1e-3 of the plane.
-    EXPECT_NEAR(double(refused) / kPoints, 1 - served, 2e-3) << degrees;
-    // The catalogue's figure is a sampled one that says three digits.
-    EXPECT_NEAR(1 - served, share, 0.006) << degrees;
-    // Redrawn, not mirrored or laid down: the heights of what is left follow the density as it is above the plane.
-    EXPECT_NEAR(height / kPoints, mean_height, 0.002) << degrees;
-  }
-}
-
 TEST(RoughSurface, NoChildLeavesToTheWrongSide) {
   int children_seen = 0;
   for (const float roughness : {0.01f, 0.1f, 0.5f, 1.0f})
@@ -188,84 +120,6 @@ TEST(RoughSurface, AThinSheetScattersAsTwoTiltedFacesDo) {
       EXPECT_LT((Vec3d(scattered) - exact).length(), tolerance) << degrees << " " << size;
       EXPECT_GT((Vec3d(scattered) - direction).length(), 0.3 * size) << degrees;
     }
-  }
-}
-
-SceneDescription mirror_plane(int size, double roughness, int samples) {
-  CameraDescription camera = front_camera(2);
-  camera.position = {0, 5, 5};
-  camera.target = {0, 0, 0};
-  SceneDescription scene = dark_scene(size, camera);
-  scene.render.antialias = {Antialiasing::Method::none, 1};
-  scene.render.cutoff = 0;
-  scene.render.rough_samples = samples;
-  scene.materials = {material("mirror", Rgb(0))};
-  scene.materials[0].reflection = Rgb(1);
-  scene.materials[0].roughness = roughness;
-  scene.shapes = {shape(PlaneShape{{0, 0, 0}, {0, 1, 0}}, "mirror")};
-  return scene;
-}
-
-/// Slope of log error over log N, and the errors on the way.
-double error_slope(const std::vector<double>& errors) {
-  // N = 4, 16, 64...: x = log 4 times 0, 1, 2...
-  double x = 0, y = 0, xx = 0, xy = 0;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const double u = std::log(4.0) * static_cast<double>(i), v = std::log(errors[i]);
-    x += u, y += v, xx += u * u, xy += u * v;
-  }
-  const auto n = static_cast<double>(errors.size());
-  return (n * xy - x * y) / (n * xx - x * x);
-}
-
-// Catalogue 27. The converged value is a quadrature over slopes that shares nothing with the renderer but Whitted's
-// model, so a bias would level the errors off.
-TEST(RoughSurface, ErrorFallsWithTheNumberOfFacets) {
-  constexpr int kSize = 16;
-  constexpr double kRoughness = 0.2, kCeiling = 2, kSquare = 1.5;
-  for (const bool checker : {false, true}) {
-    std::vector<double> errors;
-    for (const int samples : {4, 16, 64, 256}) {
-      SceneDescription description = mirror_plane(kSize, kRoughness, samples);
-      if (checker) {
-        CheckerPattern pattern;
-        pattern.even = Rgb(1), pattern.odd = Rgb(0), pattern.size = kSquare;
-        description.ambient = Rgb(1);
-        description.materials.push_back(material("checker", pattern));
-        description.shapes.push_back(shape(PlaneShape{{0, kCeiling, 0}, {0, -1, 0}}, "checker"));
-        description.cameras[0].position = {0, 1, 1};
-      } else {
-        description.background = GradientBackground{Rgb(0), Rgb(0), Rgb(1)};
-      }
-      const Scene scene = prepared(std::move(description));
-      const RenderResult result = render(scene, {});
-      double square = 0;
-      for (int y = 0; y < kSize; ++y)
-        for (int x = 0; x < kSize; ++x) {
-          Vec3f origin, direction;
-          scene.camera.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, origin, direction);
-          const Vec3d d(direction), at = Vec3d(origin) - d * (double(origin.y) / d.y);
-          static std::map<std::tuple<bool, int, int>, double> known;
-          const auto [found, fresh] = known.try_emplace({checker, checker ? x : 0, checker ? y : 0});
-          double served;
-          if (fresh)
-            found->second = quadrature(d, kRoughness, served, [&](const Vec3d& r) {
-              if (!checker) return r.y;
-              const Vec3d p = at + r * (kCeiling / r.y);
-              const double cell = std::floor(p.x / kSquare) + std::floor(p.z / kSquare);
-              return std::fmod(std::abs(cell), 2.0) < 0.5 ? 1.0 : 0.0;
-            });
-          const double difference = color_at(result.film, x, y).r - found->second;
-          square += difference * difference;
-        }
-      errors.push_back(std::sqrt(square) / kSize);
-    }
-    // -1/2 is what independent facets give; even ones -3/4 where there are edges, as checkers and the facets that are
-    // redrawn make them. 256 pixels tell an RMSE to 4.4 %, which makes .02 of the slope.
-    EXPECT_LE(error_slope(errors), -0.55) << (checker ? "checker" : "gradient");
-    RecordProperty(checker ? "checker_slope" : "gradient_slope", std::to_string(error_slope(errors)));
-    std::printf("%s: RMSE %.2e %.2e %.2e %.2e, slope %.2f\n", checker ? "checker" : "gradient", errors[0], errors[1],
-                errors[2], errors[3], error_slope(errors));
   }
 }
 

@@ -1,0 +1,59 @@
+#include "benchmarks/stability/case_tools.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace raytree::benchmarks {
+
+StabilityFigure held(std::string method, std::string quantity, double measured, double low, double high,
+                     std::string known) {
+  return {std::move(method), std::move(quantity), measured, low, high, std::move(known), StabilityExpectation::holds};
+}
+
+StabilityFigure known_failure(std::string method, std::string quantity, double measured, double low, double high,
+                              std::string known) {
+  return {std::move(method),
+          std::move(quantity),
+          measured,
+          low,
+          high,
+          std::move(known),
+          StabilityExpectation::fails_as_known};
+}
+
+Scene prepared_for(const StabilityRun& run, SceneDescription description, const PrepareOptions& options) {
+  Warnings warnings;
+  PrepareOptions preparing = options;
+  preparing.stop = run.stop;
+  Scene scene = prepare(std::move(description), preparing, warnings);
+  if (run.faults.not_robust && options.build)
+    scene.intersector = std::make_unique<EmbreeIntersector>(*scene.shapes, run.tracer_options());
+  return scene;
+}
+
+RenderResult rendered_for(const StabilityRun& run, SceneDescription description, const ChannelSet& channels) {
+  const Scene scene = prepared_for(run, std::move(description));
+  RenderOptions options;
+  options.channels = channels;
+  options.stop = run.stop;
+  return render(scene, options);
+}
+
+StabilityPicture picture_of(std::string caption, const Film& film) {
+  DisplayOptions options;
+  options.ocio_config = "builtin";
+  options.display = "sRGB";
+  options.view = "Standard";
+  return {std::move(caption), display_image(film, DisplayTransform(options))};
+}
+
+void add_picture(const StabilityRun& run, StabilityResult& result, std::string caption, SceneDescription description) {
+  if (run.pictures)
+    result.pictures.push_back(picture_of(std::move(caption), rendered_for(run, std::move(description)).film));
+}
+
+int scaled(const StabilityRun& run, int full, int least) {
+  return std::max(least, static_cast<int>(full * run.effort));
+}
+
+}  // namespace raytree::benchmarks
