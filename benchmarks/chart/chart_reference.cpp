@@ -1,0 +1,150 @@
+#include "benchmarks/chart/chart_reference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/stopwatch.h"
+
+namespace raytree::benchmarks {
+namespace {
+
+constexpr double kReferenceShare = 0.3;  ///< of the budget that the reference may take...
+constexpr double kAssumedRays = 2e6;     ///< ...at so many rays a second, whatever the machine does
+constexpr int kFewestGrid = 3, kMostGrid = 24;
+constexpr int kShallowTree = 8, kDeepTree = 40, kTreeStep = 4;
+constexpr double kMostRaysPerSample = 150;
+constexpr int kMostRoughSamples = 64;
+/// Tried one after the other until a sample is affordable; what is cut is a bound on the radiance lost.
+constexpr double kCutoffs[] = {0, 1e-6, 1e-5, 1e-4};
+constexpr double kFacetTolerance = 0.1, kDaintyTolerance = 0.05;  ///< pixels, of the halves
+constexpr int kProbeWidth = 48;
+
+Words joined_words(const Words& first, const Words& last) {
+  Words words = first;
+  words.insert(words.end(), last.begin(), last.end());
+  return words;
+}
+
+Words tree_flags(const SceneTraits& traits, int depth, double cutoff) {
+  if (!traits.branches) return {};
+  return {"--depth", std::to_string(depth), "--cutoff", fmt::format("{}", cutoff)};
+}
+
+/// Rays of one sample of a small picture under these flags. None: stopped.
+std::optional<double> rays_per_sample(const ChartSceneMaker& make, Words flags, int width, int height, int threads,
+                                      const std::atomic<bool>* stop) {
+  flags.insert(flags.end(), {"--antialias", "none"});
+  ChartScene scene = make(flags);
+  scene.description.image = {kProbeWidth, std::max(1, kProbeWidth * height / width)};
+  Warnings dropped;
+  const ChartRender probe = render_timed(std::move(scene), threads, stop, dropped);
+  if (!probe.complete) return std::nullopt;
+  return static_cast<double>(probe.total_rays()) / static_cast<double>(probe.samples);
+}
+
+/// The mean of two planes, weighted.
+void blend(float* into, const float* other, std::size_t count, double weight, double other_weight) {
+  for (std::size_t i = 0; i < count; ++i)
+    into[i] =
+        static_cast<float>((weight * static_cast<double>(into[i]) + other_weight * static_cast<double>(other[i])) /
+                           (weight + other_weight));
+}
+
+/// The mean of two films of the chart's channels. A pixel that only one of them hit keeps that one's distance.
+Film blended(Film first, const Film& last, double weight, double last_weight) {
+  const auto pixels = static_cast<std::size_t>(first.window().width) * static_cast<std::size_t>(first.window().height);
+  for (int c = 0; c < 3; ++c)
+    blend(first.plane(ChannelGroup::color, c), last.plane(ChannelGroup::color, c), pixels, weight, last_weight);
+  blend(first.plane(ChannelGroup::alpha, 0), last.plane(ChannelGroup::alpha, 0), pixels, weight, last_weight);
+  float* distance = first.plane(ChannelGroup::depth, 0);
+  const float* last_distance = last.plane(ChannelGroup::depth, 0);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (std::isfinite(distance[i]) && std::isfinite(last_distance[i]))
+      blend(distance + i, last_distance + i, 1, weight, last_weight);
+    else
+      distance[i] = std::min(distance[i], last_distance[i]);
+    Vec3d normal(0, 0, 0);
+    for (int c = 0; c < 3; ++c)
+      normal[c] = weight * static_cast<double>(first.plane(ChannelGroup::normal, c)[i]) +
+                  last_weight * static_cast<double>(last.plane(ChannelGroup::normal, c)[i]);
+    const double length = normal.length();
+    for (int c = 0; c < 3; ++c)
+      first.plane(ChannelGroup::normal, c)[i] = static_cast<float>(length > 0 ? normal[c] / length : 0);
+  }
+  return first;
+}
+
+}  // namespace
+
+std::optional<ReferencePlan> plan_reference(const ChartSceneMaker& make, const SceneTraits& traits, int width,
+                                            int height, double budget_seconds, int threads,
+                                            const std::atomic<bool>* stop) {
+  int rough_samples = traits.rough ? kMostRoughSamples : 1;
+  const auto flags_of = [&](int depth, double cutoff, double tolerance) {
+    Words words = joined_words(reference_surface_flags(traits, tolerance), tree_flags(traits, depth, cutoff));
+    // Many samples a pixel, each with facets of its own, need few facets each.
+    if (traits.rough) words.insert(words.end(), {"--rough-samples", std::to_string(rough_samples)});
+    return words;
+  };
+  double rays = 0, cutoff = 0;
+  bool affordable = false;
+  for (const double candidate : kCutoffs) {
+    cutoff = candidate;
+    affordable = true;
+    for (int depth = kShallowTree; affordable && depth <= kDeepTree; depth += kTreeStep) {
+      const std::optional<double> found =
+          rays_per_sample(make, flags_of(depth, cutoff, kFacetTolerance), width, height, threads, stop);
+      if (!found) return std::nullopt;
+      rays = *found;
+      affordable = rays <= kMostRaysPerSample * std::sqrt(rough_samples);
+      if (!traits.branches) break;
+    }
+    if (affordable) break;
+  }
+  const double pixels = static_cast<double>(width) * static_cast<double>(height);
+  const auto grid_for = [&] {
+    const double samples = budget_seconds * kReferenceShare * kAssumedRays / (rays * pixels);
+    return static_cast<int>(std::sqrt(samples / 2));
+  };
+  while (rough_samples > 8 && grid_for() < kFewestGrid + 1) rough_samples /= 2, rays /= 2;
+  ReferencePlan plan;
+  plan.grid = std::clamp(grid_for(), kFewestGrid, kMostGrid);
+  const auto half = [&](int grid, double tolerance) {
+    return joined_words(flags_of(kDeepTree, cutoff, tolerance), {"--antialias", fmt::format("grid:{}", grid)});
+  };
+  plan.first = half(plan.grid, kFacetTolerance);
+  plan.last = half(plan.grid + 1, kDaintyTolerance);
+  plan.words = fmt::format("the mean of two independent pictures of {} and {} samples a pixel", plan.grid * plan.grid,
+                           (plan.grid + 1) * (plan.grid + 1));
+  if (traits.branches)
+    plan.words += fmt::format(", trees of up to {} levels, {}", kDeepTree,
+                              cutoff > 0 ? fmt::format("no more than {:g} of radiance cut from a sample", cutoff)
+                                         : std::string("nothing cut"));
+  if (traits.curved)
+    plan.words +=
+        fmt::format(", facets within {} and {} pixels of the limit surface", kFacetTolerance, kDaintyTolerance);
+  if (!traits.sided_shapes.empty()) plan.words += ", round shapes exact";
+  if (traits.facets) plan.words += ", normals of the limit surface";
+  if (traits.rough) plan.words += fmt::format(", {} facets a rough hit", rough_samples);
+  return plan;
+}
+
+std::optional<ChartReference> make_reference(const ReferencePlan& plan, const ChartSceneMaker& make,
+                                             const DisplayTransform& display, int threads,
+                                             const std::atomic<bool>* stop, Warnings& warnings) {
+  const Clock::time_point start = Clock::now();
+  ChartRender first = render_timed(make(plan.first), threads, stop, warnings);
+  if (!first.complete) return std::nullopt;
+  Warnings same;
+  const ChartRender last = render_timed(make(plan.last), threads, stop, same);
+  if (!last.complete) return std::nullopt;
+  ChartReference reference;
+  reference.floor = picture_errors(chart_picture(last.film, display), chart_picture(first.film, display));
+  reference.film = blended(std::move(first.film), last.film, plan.grid * plan.grid, (plan.grid + 1) * (plan.grid + 1));
+  reference.seconds = seconds_since(start);
+  return reference;
+}
+
+}  // namespace raytree::benchmarks
