@@ -167,6 +167,9 @@ class ChartCommand {
 
   void run() {
     options_.budget_seconds = parse_budget(flags_.budget);
+    SceneFlags scene;
+    scene.scene = flags_.scene;
+    check_scene_flags(scene);
     check_folder(flags_.output);
     Warnings warnings;
     const Words common = common_words(flags_, warnings);

@@ -18,9 +18,15 @@ constexpr double kFewPixels = 0.01;  ///< share of pixels that may be off by mor
 
 const MetricInfo& primary_metric() { return kMetrics.front(); }
 
-std::string name_of(const ChartPoint& point) {
+std::string flags_name(const ChartPoint& point) {
   if (point.setting.part == SweepPart::defaults) return "the scene's own settings";
   return command_text(point.setting.flags);
+}
+
+/// Whether times tell that a is the quicker one, noise or not.
+bool clearly_quicker(const ChartPoint& a, const ChartPoint& b) {
+  const Spread of_a = a.cpu(), of_b = b.cpu();
+  return of_a.count > 1 && of_b.count > 1 && of_a.median < of_b.median * (1 - kTold) && of_a.high < of_b.low;
 }
 
 /// The cheapest of the points that hold. None: none holds.
@@ -65,7 +71,7 @@ std::map<std::string, KnobReach> reach_of_knobs(const ChartData& data, const Cha
   return knobs;
 }
 
-std::string listed(const std::vector<std::string>& words) {
+std::string listed_in_words(const std::vector<std::string>& words) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i)
     text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
@@ -86,7 +92,7 @@ void add_knob_findings(const ChartData& data, const ChartPoint& defaults, std::v
     if (improves) {
       const double gain = error / std::max(reach.least_error, 1e-30), price = reach.best->cpu().median / time;
       if (price > gain * (1 + kTold) && price > 1 + kTold)
-        dear.push_back(fmt::format("{} ({} divides the error by {:.2g} for {:.2g} times the time)", name,
+        dear.push_back(fmt::format("{} ({} divides the error by {:.3g} for {:.3g} times the time)", name,
                                    reach.best->setting.value, gain, price));
     }
   }
@@ -94,7 +100,7 @@ void add_knob_findings(const ChartData& data, const ChartPoint& defaults, std::v
     findings.push_back(
         {fmt::format("These knobs buy nothing here: {}. Turned alone, none of their values measured is quicker "
                      "than the scene's own by {:.0f} % or changes the error.",
-                     listed(nothing), 100 * kTold),
+                     listed_in_words(nothing), 100 * kTold),
          std::nullopt});
   // Quicker, and not worse.
   const double most = std::max(error * (1 + kErrorAlike), std::min(error + 0.1 * data.floor.rmse, error * 1.1));
@@ -102,15 +108,16 @@ void add_knob_findings(const ChartData& data, const ChartPoint& defaults, std::v
     return (point.setting.part == SweepPart::ends || point.setting.part == SweepPart::between) && point.repeats &&
            point.errors.rmse <= most && point.errors.flip <= defaults.errors.flip * (1 + kErrorAlike) + 1e-6;
   });
-  if (free && data.points[*free].cpu().median < time * (1 - kTold))
+  if (free && clearly_quicker(data.points[*free], defaults))
     findings.push_back(
         {fmt::format("Speed for nothing: {} takes {:.0f} % of the time of the scene's own settings, with an "
                      "error that is no larger.",
-                     name_of(data.points[*free]), 100 * data.points[*free].cpu().median / time),
+                     flags_name(data.points[*free]), 100 * data.points[*free].cpu().median / time),
          free});
   if (!dear.empty())
     findings.push_back(
-        {"Accuracy bought dear, where time grows by more than the error falls: " + listed(dear) + ".", std::nullopt});
+        {"Accuracy bought dear, where time grows by more than the error falls: " + listed_in_words(dear) + ".",
+         std::nullopt});
 }
 
 }  // namespace
@@ -163,7 +170,7 @@ std::vector<Finding> findings_of(const ChartData& data) {
     findings.push_back(
         {fmt::format("{}: {}; {} of processor time, RMSE {}, {:.2g} % of the pixels off by more than 1/255, "
                      "FLIP {}.",
-                     what, name_of(point), short_seconds(point.cpu().median), short_number(point.errors.rmse),
+                     what, flags_name(point), short_seconds(point.cpu().median), short_number(point.errors.rmse),
                      100 * point.errors.over_step, short_number(point.errors.flip)),
          index});
   };
@@ -200,7 +207,7 @@ std::vector<Finding> findings_of(const ChartData& data) {
                              std::max(1.0, 100 * (1 - share)))
                : fmt::format("The scene's own settings ({}) are dominated: {} reaches their RMSE in {:.0f} % "
                              "of the time.",
-                             short_seconds(time), name_of(data.points[*better]), 100 * share),
+                             short_seconds(time), flags_name(data.points[*better]), 100 * share),
            share > 1 - kAlike ? index : *better});
     }
     add_knob_findings(data, *defaults, findings);
@@ -209,7 +216,7 @@ std::vector<Finding> findings_of(const ChartData& data) {
     if (!point.repeats)
       findings.push_back(
           {fmt::format("{} does not repeat: its pictures differ from run to run. It is kept off the front.",
-                       name_of(point)),
+                       flags_name(point)),
            static_cast<std::size_t>(&point - data.points.data())});
   return findings;
 }

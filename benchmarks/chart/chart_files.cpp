@@ -29,7 +29,7 @@ std::string picture_path(const std::string& folder, const std::string& key) {
 }
 constexpr const char* kReferenceKey = "reference";
 
-std::vector<std::byte> file_bytes(const std::string& path) {
+std::vector<std::byte> bytes_of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
@@ -43,7 +43,7 @@ Json errors_json(const ErrorMetrics& errors) {
   return json;
 }
 
-ErrorMetrics errors_of(const Json& json) {
+ErrorMetrics errors_from_json(const Json& json) {
   ErrorMetrics errors;
   for (const MetricInfo& metric : kMetrics) {
     const Json& value = json.at(metric.key);
@@ -77,7 +77,7 @@ Json point_json(const ChartPoint& point) {
   return json;
 }
 
-ChartPoint point_of(const Json& json) {
+ChartPoint point_from_json(const Json& json) {
   ChartPoint point;
   point.setting.knob = json.at("knob");
   point.setting.value = json.at("value");
@@ -96,13 +96,13 @@ ChartPoint point_of(const Json& json) {
   point.film_bytes = memory.at("film");
   point.array_bytes = memory.at("arrays");
   point.tracer_bytes = memory.at("intersector");
-  point.errors = errors_of(json.at("errors"));
+  point.errors = errors_from_json(json.at("errors"));
   point.picture_hash = json.at("picture_hash");
   point.repeats = json.at("repeats");
   return point;
 }
 
-ChartData data_of(const Json& json) {
+ChartData data_from_json(const Json& json) {
   ChartData data;
   if (json.at("raytree_chart") != kChartVersion) throw std::runtime_error("another version");
   data.scene = json.at("scene");
@@ -117,8 +117,8 @@ ChartData data_of(const Json& json) {
   data.plan = {reference.at("grid"), reference.at("first").get<Words>(), reference.at("last").get<Words>(),
                reference.at("words")};
   data.reference_seconds = reference.at("seconds");
-  data.floor = errors_of(reference.at("own_error"));
-  for (const Json& point : json.at("points")) data.points.push_back(point_of(point));
+  data.floor = errors_from_json(reference.at("own_error"));
+  for (const Json& point : json.at("points")) data.points.push_back(point_from_json(point));
   return data;
 }
 
@@ -139,14 +139,14 @@ std::optional<Film> read_reference(const std::string& path, int width, int heigh
   return film;
 }
 
-void write_text(const std::string& path, const std::string& text) {
+void write_chart_text(const std::string& path, const std::string& text) {
   write_file_atomically(path, text.data(), text.size());
 }
 
 /// A picture whose name tells what it shows is written once.
-void write_picture(const std::string& path, const std::vector<std::byte>& bytes) {
+void write_chart_picture(const std::string& path, const std::vector<std::byte>& bytes) {
   std::error_code code;
-  if (fs::file_size(path, code) == bytes.size() && !code && file_bytes(path) == bytes) return;
+  if (fs::file_size(path, code) == bytes.size() && !code && bytes_of_file(path) == bytes) return;
   write_file_atomically(path, bytes.data(), bytes.size());
 }
 
@@ -218,12 +218,12 @@ std::optional<EarlierChart> read_earlier_chart(const std::string& folder) {
   EarlierChart earlier;
   try {
     std::ifstream file(path, std::ios::binary);
-    earlier.data = data_of(Json::parse(file));
+    earlier.data = data_from_json(Json::parse(file));
   } catch (const std::exception&) {
     throw Error(ErrorKind::bad_input, {path, 0, ""},
                 "is no chart of this program; remove it, or choose another folder");
   }
-  for (ChartPoint& point : earlier.data.points) point.picture = file_bytes(picture_path(folder, point.key));
+  for (ChartPoint& point : earlier.data.points) point.picture = bytes_of_file(picture_path(folder, point.key));
   std::erase_if(earlier.data.points, [](const ChartPoint& point) { return point.picture.empty(); });
   earlier.reference = read_reference(in_folder(folder, "reference.exr"), earlier.data.width, earlier.data.height);
   return earlier;
@@ -231,12 +231,12 @@ std::optional<EarlierChart> read_earlier_chart(const std::string& folder) {
 
 void write_chart(const std::string& folder, const ChartData& data) {
   fs::create_directories(fs::path(folder) / "pictures");
-  for (const ChartPoint& point : data.points) write_picture(picture_path(folder, point.key), point.picture);
-  write_picture(picture_path(folder, kReferenceKey), data.reference_picture);
-  write_text(in_folder(folder, "chart.json"), chart_json(data));
-  write_text(in_folder(folder, "points.csv"), chart_csv(data));
-  write_text(in_folder(folder, "chart.svg"), chart_svg(data, kMetrics.front()));
-  write_text(in_folder(folder, "chart.html"), chart_page(data));
+  for (const ChartPoint& point : data.points) write_chart_picture(picture_path(folder, point.key), point.picture);
+  write_chart_picture(picture_path(folder, kReferenceKey), data.reference_picture);
+  write_chart_text(in_folder(folder, "chart.json"), chart_json(data));
+  write_chart_text(in_folder(folder, "points.csv"), chart_csv(data));
+  write_chart_text(in_folder(folder, "chart.svg"), chart_svg(data, kMetrics.front()));
+  write_chart_text(in_folder(folder, "chart.html"), chart_page(data));
 }
 
 void write_reference(const std::string& folder, const Film& reference) {

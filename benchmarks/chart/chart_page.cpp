@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kStyle = R"(
+constexpr const char* kChartPageStyle = R"(
 #findings { margin: 0; padding-left: 20px; } #findings li { margin: 5px 0; } #findings [data-point] { cursor: pointer; }
 #findings [data-point]:hover { color: var(--accent); }
 .bar { display: flex; flex-wrap: wrap; gap: 8px; align-items: center; margin-bottom: 12px; }
@@ -26,7 +26,7 @@ button[aria-pressed="true"] { border-color: var(--accent); color: var(--accent);
 svg.chart { display: block; width: 100%; height: auto; }
 .looked-at { display: grid; grid-template-columns: minmax(0, 3fr) minmax(0, 2fr); gap: 28px; margin-top: 16px; }
 .looked-at pre { background: var(--paper); border: 1px solid var(--line); border-radius: 6px; padding: 10px 12px; margin-bottom: 8px; }
-.looked-at td { padding: 2px 0; }
+.looked-at td { padding: 2px 0; } .looked-at td.number { padding-left: 16px; } #picture { display: block; margin-top: 12px; width: 100%; max-width: 560px; border-radius: 4px; }
 .panes { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 12px; }
 .panes canvas { width: 100%; display: block; border-radius: 4px; cursor: grab; touch-action: none; background: #000; }
 .wide { overflow-x: auto; } #table { font-size: 13px; } #table th { cursor: pointer; user-select: none; }
@@ -44,7 +44,7 @@ std::string short_count(std::uint64_t count) {
   return count >= 10'000 ? fmt::format("{:.3g} k", value / 1e3) : fmt::format("{}", count);
 }
 
-std::string name_of(const ChartPoint& point) {
+std::string shown_name(const ChartPoint& point) {
   if (point.setting.part == SweepPart::defaults) return "the scene's own settings";
   if (point.setting.part == SweepPart::crossed || point.setting.part == SweepPart::added) return point.setting.value;
   return point.setting.knob + " " + point.setting.value;
@@ -71,8 +71,12 @@ std::string memory_text(const ChartPoint& point) {
                      1e-6 * static_cast<double>(point.array_bytes), 1e-6 * static_cast<double>(point.film_bytes));
 }
 
+std::string error_text(const MetricInfo& metric, double value) {
+  return metric.value == &ErrorMetrics::over_step ? fmt::format("{:.2g} %", 100 * value) : short_number(value);
+}
+
 /// What the script reads.
-std::string script_data(const ChartData& data) {
+std::string chart_script_data(const ChartData& data) {
   Json json;
   json["width"] = data.width;
   json["height"] = data.height;
@@ -82,18 +86,17 @@ std::string script_data(const ChartData& data) {
   json["reference"] = data_address("image/png", data.reference_picture);
   json["points"] = Json::array();
   for (const ChartPoint& point : data.points) {
-    Json entry = {{"name", name_of(point)},          {"command", point.command},
-                  {"cpu", with_spread(point.cpu())}, {"wall", with_spread(point.wall())},
-                  {"rays", rays_text(point)},        {"memory", memory_text(point)}};
+    Json entry = {{"name", shown_name(point)},         {"command", point.command}, {"cpu", with_spread(point.cpu())},
+                  {"wall", with_spread(point.wall())}, {"rays", rays_text(point)}, {"memory", memory_text(point)}};
     entry["errors"] = Json::array();
-    for (const MetricInfo& metric : kMetrics) entry["errors"].push_back(short_number(point.errors.*metric.value));
+    for (const MetricInfo& metric : kMetrics) entry["errors"].push_back(error_text(metric, point.errors.*metric.value));
     entry["picture"] = data_address("image/png", point.picture);
     json["points"].push_back(std::move(entry));
   }
   return script_json(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-std::string findings_html(const ChartData& data) {
+std::string findings_section(const ChartData& data) {
   std::string html = "<section class=\"card\"><h2>Findings</h2>\n<ul id=\"findings\">\n";
   for (const Finding& finding : findings_of(data))
     html += finding.point ? fmt::format("<li data-point=\"{}\">{}</li>\n", *finding.point, escaped_html(finding.text))
@@ -102,7 +105,7 @@ std::string findings_html(const ChartData& data) {
   return html;
 }
 
-std::string charts_html(const ChartData& data) {
+std::string charts_section(const ChartData& data) {
   std::string html = "<section class=\"card\"><h2>Speed against accuracy</h2>\n<div class=\"bar\" id=\"metrics\">\n";
   for (const MetricInfo& metric : kMetrics)
     if (metric.charted)
@@ -119,11 +122,12 @@ std::string charts_html(const ChartData& data) {
       "dear. Bars: quartiles of the time, and what the reference's own error leaves open. Click a dot for its command "
       "and picture.</p>\n"
       "<div class=\"looked-at\"><div><h3 id=\"point-name\"></h3><pre id=\"command\"></pre>\n"
-      "<button id=\"copy\">copy</button></div>\n<table><tbody id=\"figures\"></tbody></table></div></section>\n";
+      "<button id=\"copy\">copy</button>\n<img id=\"picture\" alt=\"what it renders\"></div>\n<table><tbody "
+      "id=\"figures\"></tbody></table></div></section>\n";
   return html;
 }
 
-constexpr const char* kPictures =
+constexpr const char* kPicturesSection =
     "<section class=\"card\"><h2>Pictures</h2>\n<div class=\"bar\"><label>A <select "
     "id=\"picture-a\"></select></label>\n"
     "<button id=\"swap\" title=\"swap A and B\">\u21c4</button>\n<label>B <select id=\"picture-b\"></select></label>\n"
@@ -135,12 +139,12 @@ constexpr const char* kPictures =
     "<p class=\"quiet\">The wheel zooms, dragging moves, a double click shows all; the three move "
     "together.</p></section>\n";
 
-std::string cell(double value, const std::string& text) {
+std::string number_cell(double value, const std::string& text) {
   return fmt::format("<td class=\"number\" data-value=\"{}\">{}</td>",
                      std::isfinite(value) ? fmt::format("{}", value) : "", escaped_html(text));
 }
 
-std::string table_html(const ChartData& data) {
+std::string settings_table(const ChartData& data) {
   const std::vector<std::size_t> front = chart_front(data, kMetrics.front());
   std::string html =
       "<section class=\"card\"><h2>All settings</h2><div class=\"wide\">\n<table "
@@ -161,12 +165,12 @@ std::string table_html(const ChartData& data) {
     html +=
         fmt::format("<tr data-point=\"{}\"{}><td>{}</td><td class=\"value\">{}</td>", i, best ? " class=\"best\"" : "",
                     escaped_html(point.setting.knob), escaped_html(point.setting.value));
-    html += cell(cpu, short_seconds(cpu)) + cell(wall, short_seconds(wall)) +
-            cell(static_cast<double>(rays), short_count(rays)) + cell(megabytes, fmt::format("{:.3g}", megabytes));
+    html += number_cell(cpu, short_seconds(cpu)) + number_cell(wall, short_seconds(wall)) +
+            number_cell(static_cast<double>(rays), short_count(rays)) +
+            number_cell(megabytes, fmt::format("{:.3g}", megabytes));
     for (const MetricInfo& metric : kMetrics) {
       const double value = point.errors.*metric.value;
-      html += cell(
-          value, metric.value == &ErrorMetrics::over_step ? fmt::format("{:.2g} %", 100 * value) : short_number(value));
+      html += number_cell(value, error_text(metric, value));
     }
     html += "</tr>\n";
   }
@@ -178,11 +182,11 @@ std::string table_html(const ChartData& data) {
          "and film.</p></section>\n";
 }
 
-std::string method_html(const ChartData& data) {
+std::string method_section(const ChartData& data) {
   std::string html = fmt::format(
       "<section class=\"card\"><h2>How it was measured</h2>\n<p>Reference: {}; traced in {}. Its halves differ by an "
       "RMSE of {} and a FLIP of {}: "
-      "what is smaller than that cannot be told from the reference's own error.</p>\n<pre>{}</pre>\n"
+      "what is smaller cannot be told from it.</p>\n<pre>{}</pre>\n"
       "<p class=\"quiet\">Times are those of preparing and tracing, the median of interleaved repetitions. Errors are "
       "the same on every run.</p>\n",
       escaped_html(data.plan.words), short_seconds(data.reference_seconds), short_number(data.floor.rmse),
@@ -203,9 +207,10 @@ std::string chart_page(const ChartData& data) {
   page.subtitle = fmt::format("{}{}{} x {} pixels, {} settings, {} thread{}{}", data.title,
                               data.title.empty() ? "" : ". ", data.width, data.height, data.points.size(), data.threads,
                               data.threads == 1 ? "" : "s", data.complete ? "" : "; interrupted");
-  page.style = kStyle;
-  page.body = findings_html(data) + charts_html(data) + kPictures + table_html(data) + method_html(data);
-  page.script = "const chart = " + script_data(data) + ";\n" + kChartScript;
+  page.style = kChartPageStyle;
+  page.body =
+      findings_section(data) + charts_section(data) + kPicturesSection + settings_table(data) + method_section(data);
+  page.script = "const chart = " + chart_script_data(data) + ";\n" + kChartScript;
   return report_page(page);
 }
 

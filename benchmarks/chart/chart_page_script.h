@@ -21,6 +21,7 @@ function show(i) {
   byId("point-name").textContent = p.name;
   byId("command").textContent = p.command;
   byId("figures").innerHTML = figures(p);
+  byId("picture").src = p.picture;
 }
 function mark(i) {
   document.querySelectorAll(".point.chosen").forEach(e => e.classList.remove("chosen"));

@@ -10,13 +10,13 @@
 namespace raytree::benchmarks {
 namespace {
 
-constexpr double kReferenceShare = 0.3;  ///< of the budget that the reference may take...
+constexpr double kReferenceShare = 0.4;  ///< of the budget that the reference may take...
 constexpr double kAssumedRays = 2e6;     ///< ...at so many rays a second, whatever the machine does
 constexpr int kFewestGrid = 3, kMostGrid = 24;
 constexpr int kShallowTree = 8, kDeepTree = 40, kTreeStep = 4;
-constexpr double kMostRaysPerSample = 150;
-constexpr int kMostRoughSamples = 64;
-/// Tried one after the other until a sample is affordable; what is cut is a bound on the radiance lost.
+constexpr double kFewRaysPerSample = 20, kManyRaysPerSample = 150;
+constexpr int kReferenceRoughSamples = 16;  ///< each of a pixel's many samples has facets of its own
+/// Tried one after the other until a deep tree is affordable; what is cut is a bound on the radiance lost.
 constexpr double kCutoffs[] = {0, 1e-6, 1e-5, 1e-4};
 constexpr double kFacetTolerance = 0.1, kDaintyTolerance = 0.05;  ///< pixels, of the halves
 constexpr int kProbeWidth = 48;
@@ -81,53 +81,53 @@ Film blended(Film first, const Film& last, double weight, double last_weight) {
 std::optional<ReferencePlan> plan_reference(const ChartSceneMaker& make, const SceneTraits& traits, int width,
                                             int height, double budget_seconds, int threads,
                                             const std::atomic<bool>* stop) {
-  int rough_samples = traits.rough ? kMostRoughSamples : 1;
   const auto flags_of = [&](int depth, double cutoff, double tolerance) {
     Words words = joined_words(reference_surface_flags(traits, tolerance), tree_flags(traits, depth, cutoff));
-    // Many samples a pixel, each with facets of its own, need few facets each.
-    if (traits.rough) words.insert(words.end(), {"--rough-samples", std::to_string(rough_samples)});
+    if (traits.rough) words.insert(words.end(), {"--rough-samples", std::to_string(kReferenceRoughSamples)});
     return words;
   };
+  const double pixels = static_cast<double>(width) * static_cast<double>(height);
+  const double rays_allowed = budget_seconds * kReferenceShare * kAssumedRays;
+  constexpr int kFewestSamples = kFewestGrid * kFewestGrid + (kFewestGrid + 1) * (kFewestGrid + 1);
+  const double most = std::clamp(rays_allowed / (pixels * kFewestSamples), kFewRaysPerSample, kManyRaysPerSample);
   double rays = 0, cutoff = 0;
-  bool affordable = false;
+  int depth = 0;
   for (const double candidate : kCutoffs) {
     cutoff = candidate;
-    affordable = true;
-    for (int depth = kShallowTree; affordable && depth <= kDeepTree; depth += kTreeStep) {
+    depth = 0;
+    for (int deeper = kShallowTree; deeper <= kDeepTree; deeper += kTreeStep) {
       const std::optional<double> found =
-          rays_per_sample(make, flags_of(depth, cutoff, kFacetTolerance), width, height, threads, stop);
+          rays_per_sample(make, flags_of(deeper, cutoff, kFacetTolerance), width, height, threads, stop);
       if (!found) return std::nullopt;
+      if (depth > 0 && *found > most) break;
+      depth = traits.branches ? deeper : kDeepTree;
       rays = *found;
-      affordable = rays <= kMostRaysPerSample * std::sqrt(rough_samples);
-      if (!traits.branches) break;
+      if (!traits.branches || rays > most) break;
     }
-    if (affordable) break;
+    if (depth == kDeepTree) break;
   }
-  const double pixels = static_cast<double>(width) * static_cast<double>(height);
-  const auto grid_for = [&] {
-    const double samples = budget_seconds * kReferenceShare * kAssumedRays / (rays * pixels);
-    return static_cast<int>(std::sqrt(samples / 2));
-  };
-  while (rough_samples > 8 && grid_for() < kFewestGrid + 1) rough_samples /= 2, rays /= 2;
   ReferencePlan plan;
-  plan.grid = std::clamp(grid_for(), kFewestGrid, kMostGrid);
-  const auto half = [&](int grid, double tolerance) {
-    return joined_words(flags_of(kDeepTree, cutoff, tolerance), {"--antialias", fmt::format("grid:{}", grid)});
-  };
-  plan.first = half(plan.grid, kFacetTolerance);
-  plan.last = half(plan.grid + 1, kDaintyTolerance);
+  plan.grid = std::clamp(static_cast<int>(std::sqrt(rays_allowed / (rays * pixels) / 2)), kFewestGrid, kMostGrid);
+  // Where a deeper tree could not be paid for, the halves' depths differ too, and show what that leaves out.
+  const int first_depth = depth == kDeepTree ? depth : depth - kTreeStep;
+  plan.first =
+      joined_words(flags_of(first_depth, cutoff, kFacetTolerance), {"--antialias", fmt::format("grid:{}", plan.grid)});
+  plan.last =
+      joined_words(flags_of(depth, cutoff, kDaintyTolerance), {"--antialias", fmt::format("grid:{}", plan.grid + 1)});
   plan.words = fmt::format("the mean of two independent pictures of {} and {} samples a pixel", plan.grid * plan.grid,
                            (plan.grid + 1) * (plan.grid + 1));
-  if (traits.branches)
-    plan.words += fmt::format(", trees of up to {} levels, {}", kDeepTree,
-                              cutoff > 0 ? fmt::format("no more than {:g} of radiance cut from a sample", cutoff)
-                                         : std::string("nothing cut"));
+  if (traits.branches) {
+    plan.words += first_depth == depth ? fmt::format(", trees of up to {} levels", depth)
+                                       : fmt::format(", trees of up to {} and {} levels", first_depth, depth);
+    plan.words +=
+        cutoff > 0 ? fmt::format(", no more than {:g} of radiance cut from a sample", cutoff) : ", nothing cut";
+  }
   if (traits.curved)
     plan.words +=
         fmt::format(", facets within {} and {} pixels of the limit surface", kFacetTolerance, kDaintyTolerance);
   if (!traits.sided_shapes.empty()) plan.words += ", round shapes exact";
   if (traits.facets) plan.words += ", normals of the limit surface";
-  if (traits.rough) plan.words += fmt::format(", {} facets a rough hit", rough_samples);
+  if (traits.rough) plan.words += fmt::format(", {} facets a rough hit", kReferenceRoughSamples);
   return plan;
 }
 
@@ -141,8 +141,9 @@ std::optional<ChartReference> make_reference(const ReferencePlan& plan, const Ch
   const ChartRender last = render_timed(make(plan.last), threads, stop, same);
   if (!last.complete) return std::nullopt;
   ChartReference reference;
-  reference.floor = picture_errors(chart_picture(last.film, display), chart_picture(first.film, display));
+  const ChartPicture coarse = chart_picture(first.film, display);
   reference.film = blended(std::move(first.film), last.film, plan.grid * plan.grid, (plan.grid + 1) * (plan.grid + 1));
+  reference.floor = picture_errors(chart_picture(reference.film, display), coarse);
   reference.seconds = seconds_since(start);
   return reference;
 }

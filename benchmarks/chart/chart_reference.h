@@ -26,8 +26,10 @@ std::optional<ReferencePlan> plan_reference(const ChartSceneMaker& make, const S
 
 struct ChartReference {
   Film film{0, 0, {}, {}};  ///< mean of the halves, weighted by their samples
-  ErrorMetrics floor;       ///< of one half against the other: what no error of the chart can be told from
-  double seconds = 0;       ///< wall time it took
+  /// Of the coarser half against the mean: somewhat more than the mean's own error, since independent halves lie on
+  /// different sides of the truth. What no error of the chart can be told from.
+  ErrorMetrics floor;
+  double seconds = 0;  ///< wall time it took
 };
 
 /// None: stopped.

@@ -54,6 +54,8 @@ class ChartMeasurement {
       (setting.part == SweepPart::crossed ? crossed : alone).push_back(std::move(setting));
     keep_earlier_points(alone, crossed);
     if (!stale_.empty()) repeat();
+    // However little time is left, a chart holds the scene as it is.
+    if (result_.data.points.empty() && !alone.empty()) measure(alone.front()), alone.pop_front();
     bool more = true;
     while (more && !stopped() && spent() < 1) {
       // The second time around, budget is left though all times are known.

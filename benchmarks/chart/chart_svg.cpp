@@ -11,12 +11,12 @@
 namespace raytree::benchmarks {
 namespace {
 
-constexpr double kWidth = 1160, kHeight = 600;  ///< of the drawing; it scales
+constexpr double kDrawingWidth = 1160, kDrawingHeight = 600;  ///< of the drawing; it scales
 constexpr double kLeft = 84, kRight = 24, kTop = 22, kBottom = 62;
 constexpr double kLetterWidth = 6.7, kLetterHeight = 12;  ///< of labels, about
 constexpr double kDecadesDown = 1.5;  ///< errors smaller than the floor by more than so much stand on the lower edge
 
-constexpr const char* kStyle = R"(
+constexpr const char* kDrawingStyle = R"(
 .chart { --c-paper: #ffffff; --c-ink: #1d2126; --c-quiet: #667079; --c-line: #e3e0d9; --c-front: #1f5fa8; --c-dominated: #a9aeb4;
   --c-floor: #a86a00; font: 12px system-ui, "Segoe UI", Helvetica, Arial, sans-serif; }
 @media (prefers-color-scheme: dark) { .chart { --c-paper: #1b1f23; --c-ink: #e6e4df; --c-quiet: #98a1a9; --c-line: #30363c;
@@ -34,13 +34,15 @@ constexpr const char* kStyle = R"(
 .chart .label { paint-order: stroke; stroke: var(--c-paper); stroke-width: 3px; stroke-linejoin: round; }
 )";
 
-struct Box {
+struct LabelBox {
   double left, top, right, bottom;
-  bool overlaps(const Box& o) const { return left < o.right && o.left < right && top < o.bottom && o.top < bottom; }
+  bool overlaps(const LabelBox& o) const {
+    return left < o.right && o.left < right && top < o.bottom && o.top < bottom;
+  }
 };
 
 /// A logarithmic axis onto pixels.
-struct Axis {
+struct LogAxis {
   double low, high, from, to;
   double at(double value) const {
     return from + (to - from) * (std::log(value) - std::log(low)) / (std::log(high) - std::log(low));
@@ -65,12 +67,12 @@ std::string label_of(const ChartPoint& point) {
   return text.size() > kLongest ? text.substr(0, kLongest - 1) + "\u2026" : text;
 }
 
-class Drawing {
+class ChartDrawing {
  public:
-  Drawing(const ChartData& data, const MetricInfo& metric)
+  ChartDrawing(const ChartData& data, const MetricInfo& metric)
       : data_(data), metric_(metric), front_(chart_front(data, metric)), floor_(data.floor.*metric.value) {
-    x_ = {1e300, 0, kLeft, kWidth - kRight};
-    y_ = {1e300, 0, kHeight - kBottom, kTop};
+    x_ = {1e300, 0, kLeft, kDrawingWidth - kRight};
+    y_ = {1e300, 0, kDrawingHeight - kBottom, kTop};
     for (const ChartPoint& point : data.points) {
       const Spread cpu = point.cpu();
       x_.low = std::min(x_.low, cpu.low);
@@ -96,7 +98,8 @@ class Drawing {
         "<svg class=\"chart\" data-metric=\"{}\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" "
         "role=\"img\">\n<title>Speed against accuracy: {}, {}</title>\n<style>{}</style>\n"
         "<rect class=\"paper\" width=\"{}\" height=\"{}\"/>\n",
-        metric_.key, kWidth, kHeight, escaped_html(data_.scene), escaped_html(metric_.label), kStyle, kWidth, kHeight);
+        metric_.key, kDrawingWidth, kDrawingHeight, escaped_html(data_.scene), escaped_html(metric_.label),
+        kDrawingStyle, kDrawingWidth, kDrawingHeight);
     draw_axes();
     draw_floor();
     draw_knobs();
@@ -134,8 +137,8 @@ class Drawing {
       words("quiet", "end", x_.from - 8, y_.at(tick) + 4, tick_label(tick, false));
     }
     out_ += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", kLeft, kTop,
-                        kWidth - kLeft - kRight, kHeight - kTop - kBottom);
-    words("", "middle", (x_.from + x_.to) / 2, kHeight - 18,
+                        kDrawingWidth - kLeft - kRight, kDrawingHeight - kTop - kBottom);
+    words("", "middle", (x_.from + x_.to) / 2, kDrawingHeight - 18,
           fmt::format("processor time of a render (preparing and tracing, {} thread{})", data_.threads,
                       data_.threads == 1 ? "" : "s"));
     out_ += fmt::format("<text text-anchor=\"middle\" transform=\"translate(18 {:.1f}) rotate(-90)\">{}</text>\n",
@@ -153,7 +156,7 @@ class Drawing {
     if (!(floor_ > 0)) return;
     const double y = clamped_y(floor_);
     out_ += fmt::format("<rect class=\"below\" x=\"{}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\"/>\n", kLeft, y,
-                        kWidth - kLeft - kRight, y_.from - y);
+                        kDrawingWidth - kLeft - kRight, y_.from - y);
     line("floor", x_.from, y, x_.to, y);
     place("floor-text", "start", x_.from + 8, y + 15 < y_.from - 2 ? y + 15 : y - 6,
           fmt::format("the reference's own error: {}", short_number(floor_)));
@@ -210,12 +213,12 @@ class Drawing {
     for (const std::size_t i : front_) taken_.push_back(around(data_.points[i], 6));
   }
 
-  Box around(const ChartPoint& point, double radius) const {
+  LabelBox around(const ChartPoint& point, double radius) const {
     const double x = x_of(point), y = y_of(point);
     return {x - radius, y - radius, x + radius, y + radius};
   }
 
-  static Box box_of(const char* anchor, double x, double y, const std::string& text) {
+  static LabelBox box_of(const char* anchor, double x, double y, const std::string& text) {
     const double width = kLetterWidth * static_cast<double>(text.size());
     const double left = anchor[0] == 's' ? x : anchor[0] == 'e' ? x - width : x - width / 2;
     return {left, y - kLetterHeight, left + width, y + 3};
@@ -237,10 +240,11 @@ class Drawing {
     for (const Place& at : {Place{"start", x + 9, y - 6}, Place{"end", x - 9, y + 15}, Place{"start", x + 9, y + 15},
                             Place{"end", x - 9, y - 6}, Place{"start", x + 12, y - 20}, Place{"end", x - 12, y + 29},
                             Place{"start", x + 16, y - 34}, Place{"end", x - 16, y + 43}}) {
-      const Box box = box_of(at.anchor, at.x, at.y, text);
+      const LabelBox box = box_of(at.anchor, at.x, at.y, text);
       const bool inside =
           box.left > x_.from + 3 && box.right < x_.to - 3 && box.top > y_.to + 3 && box.bottom < y_.from - 3;
-      if (!inside || std::any_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.overlaps(other); }))
+      if (!inside ||
+          std::any_of(taken_.begin(), taken_.end(), [&](const LabelBox& other) { return box.overlaps(other); }))
         continue;
       taken_.push_back(box);
       words("label", at.anchor, at.x, at.y, text);
@@ -259,8 +263,8 @@ class Drawing {
   const MetricInfo& metric_;
   std::vector<std::size_t> front_;
   double floor_;
-  Axis x_{}, y_{};
-  std::vector<Box> taken_;
+  LogAxis x_{}, y_{};
+  std::vector<LabelBox> taken_;
   std::string out_;
 };
 
@@ -279,6 +283,6 @@ std::vector<double> logarithmic_ticks(double low, double high) {
   return fine.size() > kMostTicks ? powers : fine;
 }
 
-std::string chart_svg(const ChartData& data, const MetricInfo& metric) { return Drawing(data, metric).text(); }
+std::string chart_svg(const ChartData& data, const MetricInfo& metric) { return ChartDrawing(data, metric).text(); }
 
 }  // namespace raytree::benchmarks

@@ -11,7 +11,7 @@ namespace raytree::benchmarks {
 namespace {
 
 /// The three planes of a group, pixel by pixel.
-std::vector<float> interleaved(const Film& film, ChannelGroup group, std::size_t pixels) {
+std::vector<float> interleaved_planes(const Film& film, ChannelGroup group, std::size_t pixels) {
   std::vector<float> values(3 * pixels);
   for (int c = 0; c < 3; ++c) {
     const float* plane = film.plane(group, c);
@@ -20,11 +20,11 @@ std::vector<float> interleaved(const Film& film, ChannelGroup group, std::size_t
   return values;
 }
 
-double at(const std::vector<float>& values, std::size_t index) { return static_cast<double>(values[index]); }
+double value_at(const std::vector<float>& values, std::size_t index) { return static_cast<double>(values[index]); }
 
 double degrees_between_normals(const std::vector<float>& a, const std::vector<float>& b, std::size_t pixel) {
-  const Vec3d p(at(a, 3 * pixel), at(a, 3 * pixel + 1), at(a, 3 * pixel + 2));
-  const Vec3d q(at(b, 3 * pixel), at(b, 3 * pixel + 1), at(b, 3 * pixel + 2));
+  const Vec3d p(value_at(a, 3 * pixel), value_at(a, 3 * pixel + 1), value_at(a, 3 * pixel + 2));
+  const Vec3d q(value_at(b, 3 * pixel), value_at(b, 3 * pixel + 1), value_at(b, 3 * pixel + 2));
   return std::atan2(p.cross(q).length(), p.dot(q)) / kDegree;
 }
 
@@ -32,7 +32,7 @@ void add_geometry_errors(const ChartPicture& reference, const ChartPicture& test
   double distance = 0, degrees = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < reference.alpha.size(); ++i) {
-    const double expected = at(reference.distance, i), found = at(test.distance, i);
+    const double expected = value_at(reference.distance, i), found = value_at(test.distance, i);
     if (reference.alpha[i] != 1 || test.alpha[i] != 1 || !std::isfinite(expected) || !std::isfinite(found)) continue;
     distance += std::abs(found - expected) / expected;
     degrees += degrees_between_normals(reference.normal, test.normal, i);
@@ -50,7 +50,7 @@ ChartPicture chart_picture(const Film& film, const DisplayTransform& display) {
   picture.width = film.window().width;
   picture.height = film.window().height;
   const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
-  picture.linear = interleaved(film, ChannelGroup::color, pixels);
+  picture.linear = interleaved_planes(film, ChannelGroup::color, pixels);
   picture.shown = picture.linear;
   display.apply(picture.shown.data(), static_cast<std::int64_t>(pixels));
   for (float& value : picture.shown) value = std::clamp(value, 0.0f, 1.0f);
@@ -58,7 +58,7 @@ ChartPicture chart_picture(const Film& film, const DisplayTransform& display) {
   const float* distance = film.plane(ChannelGroup::depth, 0);
   picture.alpha.assign(alpha, alpha + pixels);
   picture.distance.assign(distance, distance + pixels);
-  picture.normal = interleaved(film, ChannelGroup::normal, pixels);
+  picture.normal = interleaved_planes(film, ChannelGroup::normal, pixels);
   picture.seen = flip_picture(picture.width, picture.height, picture.shown);
   return picture;
 }
@@ -72,11 +72,11 @@ ErrorMetrics picture_errors(const ChartPicture& reference, const ChartPicture& t
   for (std::size_t i = 0; i < pixels; ++i) {
     double step = 0;
     for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
-      const double expected = at(reference.linear, k), off = at(test.linear, k) - expected;
+      const double expected = value_at(reference.linear, k), off = value_at(test.linear, k) - expected;
       squares += off * off;
       relative += off * off / (expected * expected + kRelativeGround);
       largest[i] = std::max(largest[i], std::abs(off));
-      step = std::max(step, std::abs(at(test.shown, k) - at(reference.shown, k)));
+      step = std::max(step, std::abs(value_at(test.shown, k) - value_at(reference.shown, k)));
     }
     over += step > kDisplayStep;
   }

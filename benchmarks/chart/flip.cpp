@@ -24,7 +24,7 @@ constexpr double kToXyz[3][3] = {{10135552.0 / 24577794, 8788810.0 / 24577794, 4
                                  {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
                                  {1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382}};
 
-Triple product(const double (&matrix)[3][3], const Triple& v) {
+Triple matrix_product(const double (&matrix)[3][3], const Triple& v) {
   Triple result{};
   for (std::size_t row = 0; row < 3; ++row)
     result[row] = matrix[row][0] * v[0] + matrix[row][1] * v[1] + matrix[row][2] * v[2];
@@ -45,8 +45,8 @@ struct XyzInverse {
   }
 };
 
-const Triple& white() {
-  static const Triple xyz = product(kToXyz, {1, 1, 1});
+const Triple& white_point() {
+  static const Triple xyz = matrix_product(kToXyz, {1, 1, 1});
   return xyz;
 }
 
@@ -54,8 +54,8 @@ double linear_of_srgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v 
 
 /// XYZ over that of white.
 Triple relative_xyz(const Triple& linear) {
-  const Triple xyz = product(kToXyz, linear);
-  return {xyz[0] / white()[0], xyz[1] / white()[1], xyz[2] / white()[2]};
+  const Triple xyz = matrix_product(kToXyz, linear);
+  return {xyz[0] / white_point()[0], xyz[1] / white_point()[1], xyz[2] / white_point()[2]};
 }
 
 /// The opponent space in which the eye's contrast sensitivity is applied: achromatic, red-green, blue-yellow.
@@ -67,7 +67,7 @@ Triple opponent_of_linear(const Triple& linear) {
 Triple linear_of_opponent(const Triple& opponent) {
   static const XyzInverse inverse;
   const double y = (opponent[0] + 16) / 116, x = y + opponent[1] / 500, z = y - opponent[2] / 200;
-  return product(inverse.rows, {x * white()[0], y * white()[1], z * white()[2]});
+  return matrix_product(inverse.rows, {x * white_point()[0], y * white_point()[1], z * white_point()[2]});
 }
 
 /// CIELAB, with a and b scaled by lightness: colors of dark surfaces differ less (Hunt).
@@ -100,29 +100,35 @@ double color_error(double distance) {
 }
 
 /// The plane filtered along rows by `across` and along columns by `down`; pixels beyond the border are those on it.
-Plane filtered(const Plane& plane, int width, int height, const Taps& across, const Taps& down) {
+Plane filtered_plane(const Plane& plane, int width, int height, const Taps& across, const Taps& down) {
+  const auto columns = static_cast<std::size_t>(width);
   const int radius_x = static_cast<int>(across.size() / 2), radius_y = static_cast<int>(down.size() / 2);
-  const auto row_of = [width](int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width); };
   Plane half(plane.size()), result(plane.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, height), [&](const tbb::blocked_range<int>& rows) {
-    for (int y = rows.begin(); y < rows.end(); ++y)
-      for (int x = 0; x < width; ++x) {
-        double sum = 0;
-        for (int i = -radius_x; i <= radius_x; ++i)
-          sum += across[static_cast<std::size_t>(i + radius_x)] *
-                 static_cast<double>(plane[row_of(y) + static_cast<std::size_t>(std::clamp(x + i, 0, width - 1))]);
-        half[row_of(y) + static_cast<std::size_t>(x)] = static_cast<float>(sum);
-      }
+    std::vector<double> padded(columns + across.size() - 1), sums(columns);
+    for (int y = rows.begin(); y < rows.end(); ++y) {
+      const float* row = plane.data() + static_cast<std::size_t>(y) * columns;
+      for (std::size_t i = 0; i < padded.size(); ++i)
+        padded[i] = static_cast<double>(row[std::clamp(static_cast<int>(i) - radius_x, 0, width - 1)]);
+      std::fill(sums.begin(), sums.end(), 0.0);
+      for (std::size_t tap = 0; tap < across.size(); ++tap)
+        for (std::size_t x = 0; x < columns; ++x) sums[x] += across[tap] * padded[x + tap];
+      std::transform(sums.begin(), sums.end(), half.begin() + static_cast<std::ptrdiff_t>(y) * width,
+                     [](double v) { return static_cast<float>(v); });
+    }
   });
   tbb::parallel_for(tbb::blocked_range<int>(0, height), [&](const tbb::blocked_range<int>& rows) {
-    for (int y = rows.begin(); y < rows.end(); ++y)
-      for (int x = 0; x < width; ++x) {
-        double sum = 0;
-        for (int i = -radius_y; i <= radius_y; ++i)
-          sum += down[static_cast<std::size_t>(i + radius_y)] *
-                 static_cast<double>(half[row_of(std::clamp(y + i, 0, height - 1)) + static_cast<std::size_t>(x)]);
-        result[row_of(y) + static_cast<std::size_t>(x)] = static_cast<float>(sum);
+    std::vector<double> sums(columns);
+    for (int y = rows.begin(); y < rows.end(); ++y) {
+      std::fill(sums.begin(), sums.end(), 0.0);
+      for (int i = -radius_y; i <= radius_y; ++i) {
+        const double tap = down[static_cast<std::size_t>(i + radius_y)];
+        const float* row = half.data() + static_cast<std::size_t>(std::clamp(y + i, 0, height - 1)) * columns;
+        for (std::size_t x = 0; x < columns; ++x) sums[x] += tap * static_cast<double>(row[x]);
       }
+      std::transform(sums.begin(), sums.end(), result.begin() + static_cast<std::ptrdiff_t>(y) * width,
+                     [](double v) { return static_cast<float>(v); });
+    }
   });
   return result;
 }
@@ -152,7 +158,7 @@ Plane resolved(const Plane& plane, int width, int height, const SensitivityTerm 
     for (double& tap : taps) tap /= one;
     const double weight = term.a * std::sqrt(kPi / term.b) * one * one;
     total += weight;
-    const Plane part = filtered(plane, width, height, taps, taps);
+    const Plane part = filtered_plane(plane, width, height, taps, taps);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * static_cast<double>(part[i]);
   }
   Plane result(plane.size());
@@ -181,7 +187,8 @@ Plane detected(const Plane& plane, int width, int height, bool points, double pe
   }
   for (double& tap : smooth) tap /= total;
   balance(slope);
-  const Plane x = filtered(plane, width, height, slope, smooth), y = filtered(plane, width, height, smooth, slope);
+  const Plane x = filtered_plane(plane, width, height, slope, smooth),
+              y = filtered_plane(plane, width, height, smooth, slope);
   Plane magnitude(plane.size());
   for (std::size_t i = 0; i < plane.size(); ++i) magnitude[i] = std::hypot(x[i], y[i]);
   return magnitude;

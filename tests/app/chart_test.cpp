@@ -52,6 +52,17 @@ TEST(ChartCommand, WritesEverythingAndErrorsRepeatToTheLastBit) {
   for (const char* knob : {"--rough-samples", "--cutoff", "--tolerance"}) EXPECT_FALSE(contains(flags, knob)) << knob;
 }
 
+TEST(ChartBudget, AnyHoldsTheSceneAsItIs) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_program({"chart", "spheres-1980", "-o", folder.path("chart"), "--size", "24x16", "--budget", "1s"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json chart = chart_in(folder, "chart");
+  EXPECT_EQ(chart["points"][0]["knob"], "defaults");
+  EXPECT_EQ(chart["complete"], true);
+  EXPECT_TRUE(contains(chart["reference"]["command"], "--depth")) << chart["reference"]["command"];
+}
+
 TEST(ChartCommand, CommandsGiveThePicturesCharted) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_program(small_chart(folder, "cone", "chart")).status, 0);
