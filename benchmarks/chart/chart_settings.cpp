@@ -189,13 +189,13 @@ SceneTraits scene_traits(const Scene& scene) {
 
 std::vector<ChartSetting> sweep_of(const SceneTraits& traits, const std::vector<Words>& added) {
   std::vector<ChartSetting> settings{{"defaults", "the scene's own", {}, SweepPart::defaults}}, between;
+  for (const Words& words : added) settings.push_back({"added", command_text(words), words, SweepPart::added});
   for (const Knob& knob : knobs_of(traits))
     for (std::size_t i = 0; i < knob.values.size(); ++i) {
       const auto& [value, words] = knob.values[i];
       const bool end = i == 0 || i + 1 == knob.values.size();
       (end ? settings : between).push_back({knob.name, value, words, end ? SweepPart::ends : SweepPart::between});
     }
-  for (const Words& words : added) settings.push_back({"added", command_text(words), words, SweepPart::added});
   settings.insert(settings.end(), between.begin(), between.end());
   const std::vector<ChartSetting> crossed = crossed_set(traits);
   settings.insert(settings.end(), crossed.begin(), crossed.end());

@@ -89,7 +89,7 @@ TEST(ChartFindings, NameKnobsThatBuyNothingAndSpeedForNothing) {
 TEST(ChartFindings, NameWhatIsBoughtDear) {
   ChartData data = test::sample_chart();
   data.points.push_back(charted_point("slow", "9", 5, 0.04));
-  EXPECT_TRUE(contains(all_findings(data), "slow (9 divides the error by 1.2 for 10 times the time)"))
+  EXPECT_TRUE(contains(all_findings(data), "slow (9 divides the error by 1.25 for 10 times the time)"))
       << all_findings(data);
 }
 
