@@ -10,8 +10,8 @@
 namespace raytree::benchmarks {
 namespace {
 
-/// Times and errors that differ by less than this count as alike.
-constexpr double kAlike = 0.03, kErrorAlike = 0.02;
+/// Errors that differ by less than this share count as alike.
+constexpr double kErrorAlike = 0.02;
 /// A time is told from another when they differ by this.
 constexpr double kTold = 0.08;
 constexpr double kFewPixels = 0.01;  ///< share of pixels that may be off by more than a step
@@ -202,13 +202,13 @@ std::vector<Finding> findings_of(const ChartData& data) {
                })) {
       const double share = data.points[*better].cpu().median / time;
       findings.push_back(
-          {share > 1 - kAlike
+          {share > 1 - kTold
                ? fmt::format("The scene's own settings ({}) lie within {:.0f} % of the front.", short_seconds(time),
                              std::max(1.0, 100 * (1 - share)))
                : fmt::format("The scene's own settings ({}) are dominated: {} reaches their RMSE in {:.0f} % "
                              "of the time.",
                              short_seconds(time), flags_name(data.points[*better]), 100 * share),
-           share > 1 - kAlike ? index : *better});
+           share > 1 - kTold ? index : *better});
     }
     add_knob_findings(data, *defaults, findings);
   }

@@ -115,7 +115,7 @@ ChartData data_from_json(const Json& json) {
   data.threads = json.at("threads");
   const Json& reference = json.at("reference");
   data.plan = {reference.at("grid"), reference.at("first").get<Words>(), reference.at("last").get<Words>(),
-               reference.at("words")};
+               reference.at("depth_residual"), reference.at("words")};
   data.reference_seconds = reference.at("seconds");
   data.floor = errors_from_json(reference.at("own_error"));
   for (const Json& point : json.at("points")) data.points.push_back(point_from_json(point));
@@ -173,6 +173,7 @@ std::string chart_json(const ChartData& data) {
   json["complete"] = data.complete;
   json["reference"] = {{"command", data.reference_command},
                        {"words", data.plan.words},
+                       {"depth_residual", data.plan.depth_residual},
                        {"grid", data.plan.grid},
                        {"first", data.plan.first},
                        {"last", data.plan.last},

@@ -14,7 +14,7 @@ constexpr double kReferenceShare = 0.4;  ///< of the budget that the reference m
 constexpr double kAssumedRays = 2e6;     ///< ...at so many rays a second, whatever the machine does
 constexpr int kFewestGrid = 3, kMostGrid = 24;
 constexpr int kShallowTree = 8, kDeepTree = 40, kTreeStep = 4;
-constexpr double kFewRaysPerSample = 20, kManyRaysPerSample = 150;
+constexpr double kFewRaysPerSample = 30, kManyRaysPerSample = 150;
 constexpr int kReferenceRoughSamples = 16;  ///< each of a pixel's many samples has facets of its own
 /// Tried one after the other until a deep tree is affordable; what is cut is a bound on the radiance lost.
 constexpr double kCutoffs[] = {0, 1e-6, 1e-5, 1e-4};
@@ -32,16 +32,31 @@ Words tree_flags(const SceneTraits& traits, int depth, double cutoff) {
   return {"--depth", std::to_string(depth), "--cutoff", fmt::format("{}", cutoff)};
 }
 
-/// Rays of one sample of a small picture under these flags. None: stopped.
-std::optional<double> rays_per_sample(const ChartSceneMaker& make, Words flags, int width, int height, int threads,
-                                      const std::atomic<bool>* stop) {
+/// A small picture under these flags, one sample a pixel.
+ChartRender small_picture(const ChartSceneMaker& make, Words flags, int width, int height, int threads,
+                          const std::atomic<bool>* stop) {
   flags.insert(flags.end(), {"--antialias", "none"});
   ChartScene scene = make(flags);
   scene.description.image = {kProbeWidth, std::max(1, kProbeWidth * height / width)};
   Warnings dropped;
-  const ChartRender probe = render_timed(std::move(scene), threads, stop, dropped);
-  if (!probe.complete) return std::nullopt;
-  return static_cast<double>(probe.total_rays()) / static_cast<double>(probe.samples);
+  return render_timed(std::move(scene), threads, stop, dropped);
+}
+
+double rays_per_sample(const ChartRender& render) {
+  return static_cast<double>(render.total_rays()) / static_cast<double>(render.samples);
+}
+
+/// Between two films of one size, linear light.
+double rmse_between(const Film& a, const Film& b) {
+  const auto pixels = static_cast<std::size_t>(a.window().width) * static_cast<std::size_t>(a.window().height);
+  double squares = 0;
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const double off = static_cast<double>(a.plane(ChannelGroup::color, c)[i]) -
+                         static_cast<double>(b.plane(ChannelGroup::color, c)[i]);
+      squares += off * off;
+    }
+  return std::sqrt(squares / (3 * static_cast<double>(pixels)));
 }
 
 /// The mean of two planes, weighted.
@@ -90,35 +105,40 @@ std::optional<ReferencePlan> plan_reference(const ChartSceneMaker& make, const S
   const double rays_allowed = budget_seconds * kReferenceShare * kAssumedRays;
   constexpr int kFewestSamples = kFewestGrid * kFewestGrid + (kFewestGrid + 1) * (kFewestGrid + 1);
   const double most = std::clamp(rays_allowed / (pixels * kFewestSamples), kFewRaysPerSample, kManyRaysPerSample);
+  ReferencePlan plan;
   double rays = 0, cutoff = 0;
   int depth = 0;
   for (const double candidate : kCutoffs) {
     cutoff = candidate;
     depth = 0;
+    plan.depth_residual = 0;
+    std::optional<Film> deepest;
     for (int deeper = kShallowTree; deeper <= kDeepTree; deeper += kTreeStep) {
-      const std::optional<double> found =
-          rays_per_sample(make, flags_of(deeper, cutoff, kFacetTolerance), width, height, threads, stop);
-      if (!found) return std::nullopt;
-      if (depth > 0 && *found > most) break;
+      ChartRender probe = small_picture(make, flags_of(deeper, cutoff, kFacetTolerance), width, height, threads, stop);
+      if (!probe.complete) return std::nullopt;
+      if (depth > 0 && rays_per_sample(probe) > most) {
+        plan.depth_residual = rmse_between(*deepest, probe.film);
+        break;
+      }
       depth = traits.branches ? deeper : kDeepTree;
-      rays = *found;
-      if (!traits.branches || rays > most) break;
+      rays = rays_per_sample(probe);
+      deepest = std::move(probe.film);
+      if (!traits.branches) break;
     }
     if (depth == kDeepTree) break;
   }
-  ReferencePlan plan;
   plan.grid = std::clamp(static_cast<int>(std::sqrt(rays_allowed / (rays * pixels) / 2)), kFewestGrid, kMostGrid);
-  // Where a deeper tree could not be paid for, the halves' depths differ too, and show what that leaves out.
-  const int first_depth = depth == kDeepTree ? depth : depth - kTreeStep;
   plan.first =
-      joined_words(flags_of(first_depth, cutoff, kFacetTolerance), {"--antialias", fmt::format("grid:{}", plan.grid)});
+      joined_words(flags_of(depth, cutoff, kFacetTolerance), {"--antialias", fmt::format("grid:{}", plan.grid)});
   plan.last =
       joined_words(flags_of(depth, cutoff, kDaintyTolerance), {"--antialias", fmt::format("grid:{}", plan.grid + 1)});
   plan.words = fmt::format("the mean of two independent pictures of {} and {} samples a pixel", plan.grid * plan.grid,
                            (plan.grid + 1) * (plan.grid + 1));
   if (traits.branches) {
-    plan.words += first_depth == depth ? fmt::format(", trees of up to {} levels", depth)
-                                       : fmt::format(", trees of up to {} and {} levels", first_depth, depth);
+    plan.words += fmt::format(", trees of up to {} levels", depth);
+    if (plan.depth_residual > 0)
+      plan.words += fmt::format(" (deeper ones, which change it by an RMSE of about {:.2g}, were beyond the budget)",
+                                plan.depth_residual);
     plan.words +=
         cutoff > 0 ? fmt::format(", no more than {:g} of radiance cut from a sample", cutoff) : ", nothing cut";
   }
@@ -144,6 +164,7 @@ std::optional<ChartReference> make_reference(const ReferencePlan& plan, const Ch
   const ChartPicture coarse = chart_picture(first.film, display);
   reference.film = blended(std::move(first.film), last.film, plan.grid * plan.grid, (plan.grid + 1) * (plan.grid + 1));
   reference.floor = picture_errors(chart_picture(reference.film, display), coarse);
+  reference.floor.rmse = std::hypot(reference.floor.rmse, plan.depth_residual);
   reference.seconds = seconds_since(start);
   return reference;
 }

@@ -56,8 +56,8 @@ struct SceneTraits {
 };
 SceneTraits scene_traits(const Scene& scene);
 
-/// All settings, in the order in which they are to be measured: the defaults, the ends of each knob, what the user
-/// adds, the values between, a crossed set that covers the space evenly from its first members on. Each knob from cheap
+/// All settings, in the order in which they are to be measured: the defaults, what the user adds, the ends of each
+/// knob, the values between, a crossed set that covers the space evenly from its first members on. Each knob from cheap
 /// to dear.
 std::vector<ChartSetting> sweep_of(const SceneTraits& traits, const std::vector<Words>& added);
 
