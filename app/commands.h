@@ -12,6 +12,7 @@ int scenes_command(const Words& words);
 int schema_command(const Words& words);
 int ocio_command(const Words& words);
 int bench_command(const Words& words);
+int chart_command(const Words& words);
 int convert_command(const Words& words);
 int validate_command(const Words& words);
 int ray_command(const Words& words);

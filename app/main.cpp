@@ -32,6 +32,7 @@ constexpr Command kCommands[] = {
     {"scenes", "List the built-in scenes", scenes_command},
     {"schema", "Print the JSON Schema of scene files", schema_command},
     {"bench", "Measure how fast a scene's rays are intersected", bench_command},
+    {"chart", "Chart a scene's speed against its accuracy, setting by setting", chart_command},
     {"validate", "Compare every ray of a picture with a slow and plain tracer's", validate_command},
     {"stability", "Provoke the known failures of methods, and measure which hold", stability_command},
     {"ray", "Ask both tracers about one ray", ray_command},

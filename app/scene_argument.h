@@ -27,7 +27,7 @@ struct SceneFlags {
   std::string shading, terminator, reflections;
   bool classic = false;
   std::string hierarchy, memory;
-  std::string intersector, sphere_size, sphere_search;
+  std::string intersector, edges, sphere_size, sphere_search;
 };
 
 /// Adds --size, --camera, --set, --tolerance and --rate; with `tracing` also what else changes the
@@ -40,7 +40,7 @@ void add_shading_flag(CLI::App& command, SceneFlags& flags);
 /// Adds --hierarchy and --memory, for commands that trace.
 void add_hierarchy_flags(CLI::App& command, SceneFlags& flags);
 
-/// Adds --intersector, --sphere-size and --sphere-search.
+/// Adds --intersector, --edges, --sphere-size and --sphere-search.
 void add_intersector_flags(CLI::App& command, SceneFlags& flags);
 
 /// What the flags say of the tracer and what it builds. Throws Error (bad_input).

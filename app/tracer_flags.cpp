@@ -27,6 +27,12 @@ struct NamedSearch {
 constexpr NamedSearch kSearches[] = {
     {"auto", Search::automatic}, {"linear", Search::linear}, {"hierarchy", Search::hierarchy}};
 
+struct NamedEdges {
+  std::string_view name;
+  bool watertight;
+};
+constexpr NamedEdges kEdges[] = {{"watertight", true}, {"fast", false}};
+
 /// The entry of that name.
 template <class Entry, std::size_t Count>
 const Entry& entry_named(const char* flag, const std::string& text, const Entry (&entries)[Count]) {
@@ -69,6 +75,11 @@ void add_intersector_flags(CLI::App& command, SceneFlags& flags) {
       ->type_name("NAME")
       ->group("Tracing");
   command
+      .add_option("--edges", flags.edges,
+                  "embree: watertight, the default, or fast: rays may slip between triangles that share an edge")
+      ->type_name("HOW")
+      ->group("Tracing");
+  command
       .add_option("--sphere-size", flags.sphere_size,
                   "spheres: curved surfaces are divided down to spheres of that radius in pixels; default: 0.25")
       ->type_name("PIXELS")
@@ -85,6 +96,7 @@ void apply_tracer_flags(const SceneFlags& flags, PrepareOptions& options) {
   options.hierarchy = flags.hierarchy;
   options.memory_allowed = parse_memory(flags.memory);
   if (!flags.intersector.empty()) options.tracer = entry_named("--intersector", flags.intersector, kTracers).tracer;
+  if (!flags.edges.empty()) options.watertight = entry_named("--edges", flags.edges, kEdges).watertight;
   if (!flags.sphere_size.empty()) {
     options.spheres.sphere_pixels = parse_real("--sphere-size", flags.sphere_size);
     if (!(options.spheres.sphere_pixels >= kLeastSpherePixels))

@@ -292,6 +292,7 @@ void build_embree(const PrepareOptions& options, Scene& scene) {
   EmbreeOptions embree;
   embree.quality = choice.chosen->quality;
   embree.compact = choice.chosen->compact;
+  embree.robust = options.watertight;
   embree.threads = options.threads;
   embree.stop = options.stop;
   scene.intersector = std::make_unique<EmbreeIntersector>(*scene.shapes, embree);

@@ -87,6 +87,7 @@ struct PrepareOptions {
   bool build = true;                        ///< false: assemble only, no intersector (for `info`)
   std::string hierarchy;                    ///< see hierarchy_named(); empty: chosen by cost
   std::uint64_t memory_allowed = 0;         ///< bytes, of arrays and hierarchy together; 0: any
+  bool watertight = true;                   ///< see EmbreeOptions::robust
   bool measure_tessellation = false;        ///< compare every facet with its limit surface
   Tracer tracer = Tracer::embree;
   SphereBoundedOptions spheres;  ///< of Tracer::spheres, but for `stop`

@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> kCommandNames = {"render", "info",  "sheet",    "convert", "scenes",
-                                                "schema", "bench", "validate", "ray",     "ocio"};
+const std::vector<std::string> kCommandNames = {"render", "info",  "sheet",    "convert", "scenes", "schema",
+                                                "bench",  "chart", "validate", "ray",     "ocio"};
 // --- help, version, documentation ---------------------------------------------------------------------------
 
 std::set<std::string> flags_in(const std::string& text) {
@@ -82,7 +82,7 @@ TEST(CommandLineErrors, UnknownWordsAreNamedWithWhatWouldBeRight) {
   TemporaryFolder folder;
   const std::string png = folder.path("a.png");
   expect_bad_input({"rendr", kScene}, {"\"rendr\"", "did you mean render?",
-                                       "info, sheet, convert, scenes, schema, bench, validate, stability, ray, ocio"});
+                                       "info, sheet, convert, scenes, schema, bench, chart, validate, stability, ray, ocio"});
   expect_bad_input({"--verison"}, {"--verison", "--version"});
   expect_bad_input(with(small_render(png), {"--thread", "2"}), {"unknown flag --thread;", "did you mean --threads?"});
   expect_bad_input(with(small_render(png), {"--exposur=1"}), {"unknown flag --exposur;", "--exposure"});

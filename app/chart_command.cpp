@@ -1,0 +1,237 @@
+// `raytree chart`: a scene rendered in many ways, speed against accuracy. What a setting's flags mean is read by the
+// parser of `raytree render`.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "app/commands.h"
+#include "app/exit_status.h"
+#include "app/interruption.h"
+#include "app/messages.h"
+#include "app/process.h"
+#include "app/progress.h"
+#include "app/render_options.h"
+#include "app/scene_argument.h"
+#include "benchmarks/chart/chart_files.h"
+#include "benchmarks/chart/chart_run.h"
+#include "renderer/image_file.h"
+
+namespace raytree::app {
+namespace {
+
+namespace fs = std::filesystem;
+using benchmarks::ChartScene;
+
+constexpr int kChartWidth = 400;  ///< pixels, where --size says nothing; the scene's own if that is less
+constexpr double kLeastBudget = 1, kMostBudget = 7 * 24 * 3600;  ///< seconds
+
+struct ChartFlags {
+  std::string scene, output, size, camera, budget = "2m", threads;
+  std::vector<std::string> sets, also;
+  bool fresh = false, quiet = false;
+};
+
+/// "20s", "2m", "1.5h"; a bare number is seconds.
+double parse_budget(const std::string& text) {
+  const std::string units = "smh";
+  const std::size_t unit = text.empty() ? std::string::npos : units.find(text.back());
+  constexpr double kSeconds[] = {1, 60, 3600};
+  const double number = parse_real("--budget", unit == std::string::npos ? text : text.substr(0, text.size() - 1));
+  const double seconds = number * (unit == std::string::npos ? 1 : kSeconds[unit]);
+  if (!(seconds >= kLeastBudget && seconds <= kMostBudget))
+    throw usage_error(fmt::format("--budget: \"{}\" is not within 1s and 168h; for example 20s, 2m or 1.5h", text));
+  return seconds;
+}
+
+/// Words of a line, apart by blanks; single quotes hold blanks together.
+Words split_words(const std::string& line) {
+  Words words;
+  bool open = false, quoted = false;
+  for (const char c : line) {
+    if (c == '\'') {
+      quoted = !quoted;
+      if (!open) words.emplace_back(), open = true;
+    } else if (c == ' ' && !quoted) {
+      open = false;
+    } else {
+      if (!open) words.emplace_back(), open = true;
+      words.back() += c;
+    }
+  }
+  if (quoted) throw usage_error(fmt::format("--also: the quote in \"{}\" does not end", line));
+  return words;
+}
+
+std::optional<ChartFlags> parse_chart_flags(const Words& words) {
+  ChartFlags flags;
+  CLI::App command("Chart speed against accuracy: a scene in many settings, each with its time and its error.",
+                   "raytree chart");
+  command
+      .add_option("SCENE", flags.scene,
+                  "Scene file (.json), mesh (.obj, .ply), patches (.bpt) or built-in scene (raytree scenes)")
+      ->type_name("");
+  command.add_option("-o,--output", flags.output, "Folder for chart.html and what belongs to it; made if need be")
+      ->type_name("DIR")
+      ->group("Output");
+  command.add_option("--budget", flags.budget, "Time to spend: 20s, 2m, 1.5h; default: 2m")
+      ->type_name("TIME")
+      ->group("Output");
+  command.add_flag("--fresh", flags.fresh, "Measure all anew, whatever DIR holds")->group("Output");
+  command.add_option("--also", flags.also, "Measure a setting of your own: flags of raytree render; repeatable")
+      ->type_name("FLAGS")
+      ->allow_extra_args(false)
+      ->group("Scene");
+  command.add_option("--size", flags.size, "Image size in pixels; default: 400 wide at most")
+      ->type_name("WxH")
+      ->group("Scene");
+  command.add_option("--camera", flags.camera, "Camera by its name; default: the scene's first")
+      ->type_name("NAME")
+      ->group("Scene");
+  command.add_option("--set", flags.sets, "Set any value of the scene, for all settings; repeatable")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false)
+      ->group("Scene");
+  command.add_option("--threads", flags.threads, "Threads; default: all. Errors do not depend on it")
+      ->type_name("N")
+      ->group("Tracing");
+  command.add_flag("--quiet", flags.quiet, "Errors alone: no progress, no warnings, no findings")->group("Messages");
+  prepare_usage(command);
+  if (!parse_usage(command, words)) return std::nullopt;
+  return flags;
+}
+
+/// Throws Error unless the folder's files can be made.
+void check_folder(const std::string& folder) {
+  if (folder.empty()) throw usage_error("no output: add -o DIR, for example -o chart");
+  std::error_code code;
+  if (fs::exists(folder, code) && !fs::is_directory(folder, code))
+    throw Error(ErrorKind::bad_input, {folder, 0, ""}, "is a file; -o names a folder");
+  check_writable(fs::is_directory(folder, code) ? (fs::path(folder) / "chart.json").string() : folder);
+}
+
+/// Reads words as `raytree render` would, without an output.
+ChartScene chart_scene(const Words& words, Warnings& warnings) {
+  SceneFlags flags;
+  CLI::App command("", "raytree render");
+  command.add_option("SCENE", flags.scene);
+  add_scene_flags(command, flags, true);
+  add_shading_flag(command, flags);
+  add_hierarchy_flags(command, flags);
+  add_intersector_flags(command, flags);
+  prepare_usage(command);
+  // Asked for in place of a setting, help is no setting.
+  if (std::any_of(words.begin(), words.end(),
+                  [](const std::string& w) { return w == "-h" || w == "--help" || w == "--version"; }))
+    throw usage_error("--also: help is no setting");
+  parse_usage(command, words);
+  check_scene_flags(flags);
+  ChartScene scene{load_scene(flags, warnings), {}};
+  apply_tracer_flags(flags, scene.prepare);
+  scene.prepare.camera = flags.camera;
+  return scene;
+}
+
+Words joined_words(Words first, const Words& last) {
+  first.insert(first.end(), last.begin(), last.end());
+  return first;
+}
+
+/// The scene and what is alike in all settings, as `raytree render` takes it. The size is always said, so that commands
+/// mean what was measured.
+Words common_words(const ChartFlags& flags, Warnings& warnings) {
+  Words words{flags.scene};
+  for (const std::string& set : flags.sets) words.insert(words.end(), {"--set", set});
+  if (!flags.camera.empty()) words.insert(words.end(), {"--camera", flags.camera});
+  std::string size = flags.size;
+  if (size.empty()) {
+    const ImageDescription image = chart_scene(words, warnings).description.image;
+    const int width = std::min(image.width, kChartWidth);
+    size = fmt::format("{}x{}", width, std::max(1, static_cast<int>(std::int64_t{image.height} * width / image.width)));
+  }
+  words.insert(words.end(), {"--size", size});
+  return words;
+}
+
+class ChartCommand {
+ public:
+  ChartCommand(const ChartFlags& flags, int threads, Progress& progress, const Interruption& interruption)
+      : flags_(flags), progress_(progress), interruption_(interruption) {
+    options_.threads = threads;
+  }
+
+  void run() {
+    options_.budget_seconds = parse_budget(flags_.budget);
+    SceneFlags scene;
+    scene.scene = flags_.scene;
+    check_scene_flags(scene);
+    check_folder(flags_.output);
+    Warnings warnings;
+    const Words common = common_words(flags_, warnings);
+    options_.command = joined_words({"raytree", "render"}, common);
+    options_.make = [common](const Words& flags) {
+      Warnings same;
+      return chart_scene(joined_words(common, flags), same);
+    };
+    for (const std::string& line : flags_.also) {
+      options_.added.push_back(split_words(line));
+      options_.make(options_.added.back());  // what is wrong is said before anything is measured
+    }
+    options_.version = version();
+    options_.stop = &interruption_.stop();
+    options_.on_phase = [this](const std::string& text) { progress_.phase(text); };
+    options_.keep_reference = [this](const Film& film) { benchmarks::write_reference(flags_.output, film); };
+    options_.save = [this](const benchmarks::ChartData& data) { benchmarks::write_chart(flags_.output, data); };
+    const auto earlier = flags_.fresh ? std::nullopt : benchmarks::read_earlier_chart(flags_.output);
+    const benchmarks::MeasuredChart chart = measure_chart(options_, earlier ? &*earlier : nullptr, warnings);
+    progress_.clear();
+    if (!flags_.quiet) print_warnings(warnings, false);
+    if (chart.data.points.empty()) return;  // interrupted before there was anything
+    benchmarks::write_chart(flags_.output, chart.data);
+    if (!flags_.quiet) report(chart);
+  }
+
+ private:
+  void report(const benchmarks::MeasuredChart& chart) const {
+    std::string text;
+    for (const benchmarks::Finding& finding : findings_of(chart.data)) text += "- " + finding.text + "\n";
+    if (!interruption_.stop()) print_result(text);
+    const std::string kept = chart.points_kept > 0 ? fmt::format(", {} of them from before", chart.points_kept) : "";
+    print_message(fmt::format("wrote {} ({} settings{})", (fs::path(flags_.output) / "chart.html").string(),
+                              chart.data.points.size(), kept));
+  }
+
+  const ChartFlags& flags_;
+  Progress& progress_;
+  const Interruption& interruption_;
+  benchmarks::ChartOptions options_;
+};
+
+}  // namespace
+
+int chart_command(const Words& words) {
+  const std::optional<ChartFlags> flags = parse_chart_flags(words);
+  if (!flags) return kSuccess;
+  const int threads = parse_threads(flags->threads);
+  Progress progress(flags->quiet ? ProgressMode::none : ProgressMode::automatic);
+  const Interruption interruption([&progress] { progress.abandon(); });
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  try {
+    arena.execute([&] { ChartCommand(*flags, threads, progress, interruption).run(); });
+  } catch (const Error&) {
+    // A step that the signal cut short may say so as an error of its own.
+    if (!interruption.stop()) throw;
+  }
+  if (!interruption.stop()) return kSuccess;
+  progress.clear();
+  if (!flags->quiet) print_message("raytree: interrupted");
+  return kSignalBase + interruption.signal();
+}
+
+}  // namespace raytree::app

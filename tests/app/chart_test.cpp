@@ -1,0 +1,257 @@
+// `raytree chart` from outside: what it writes, that errors repeat, that commands give the pictures charted, that it
+// goes on where it was interrupted, and that its page can be clicked.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "renderer/image_file.h"
+#include "tests/app/program.h"
+
+namespace raytree::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Glass needs a tree, the cone has sides; small enough for seconds.
+std::vector<std::string> small_chart(const TemporaryFolder& folder, const std::string& scene, const std::string& name) {
+  return {"chart", scene, "-o", folder.path(name), "--size", "36x24", "--budget", "1s"};
+}
+
+Json chart_in(const TemporaryFolder& folder, const std::string& name) {
+  return Json::parse(file_text(folder.path(name) + "/chart.json"));
+}
+
+TEST(ChartCommand, WritesEverythingAndErrorsRepeatToTheLastBit) {
+  const TemporaryFolder folder;
+  const ProgramResult first = run_program(small_chart(folder, "cone", "first"));
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_TRUE(contains(first.out, "Cheapest setting under 1/255")) << first.out;
+  for (const char* file : {"chart.html", "chart.svg", "points.csv", "chart.json", "reference.exr"})
+    EXPECT_FALSE(file_text(folder.path("first") + "/" + file).empty()) << file;
+  ASSERT_EQ(run_program(with(small_chart(folder, "cone", "second"), {"--threads", "1"})).status, 0);
+  const Json a = chart_in(folder, "first"), b = chart_in(folder, "second");
+  EXPECT_EQ(a["reference"]["own_error"], b["reference"]["own_error"]);
+  EXPECT_GT(a["reference"]["own_error"]["rmse"], 0);
+  std::size_t compared = 0;
+  for (const Json& point : a["points"])
+    for (const Json& other : b["points"])
+      if (point["key"] == other["key"]) {
+        EXPECT_EQ(point["errors"].dump(), other["errors"].dump()) << point["command"];
+        EXPECT_EQ(point["picture_hash"], other["picture_hash"]);
+        ++compared;
+      }
+  EXPECT_GE(compared, 10u);
+  // Knobs of the scene, and none that it has no use for.
+  const std::string flags = a["points"].dump();
+  for (const char* knob : {"--shading", "sides=8", "--edges", "--threshold"})
+    EXPECT_TRUE(contains(flags, knob)) << knob;
+  for (const char* knob : {"--rough-samples", "--cutoff", "--tolerance"}) EXPECT_FALSE(contains(flags, knob)) << knob;
+}
+
+TEST(ChartBudget, AnyHoldsTheSceneAsItIs) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_program({"chart", "spheres-1980", "-o", folder.path("chart"), "--size", "24x16", "--budget", "1s"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json chart = chart_in(folder, "chart");
+  EXPECT_EQ(chart["points"][0]["knob"], "defaults");
+  EXPECT_EQ(chart["complete"], true);
+  EXPECT_TRUE(contains(chart["reference"]["command"], "--depth")) << chart["reference"]["command"];
+}
+
+TEST(ChartCommand, CommandsGiveThePicturesCharted) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_program(small_chart(folder, "cone", "chart")).status, 0);
+  const Json chart = chart_in(folder, "chart");
+  std::size_t compared = 0;
+  for (const Json& point : chart["points"]) {
+    if (compared == 8) break;  // defaults and ends, sides among them
+    const std::string png = folder.path("again.png"), command = point["command"];
+    ASSERT_EQ(command.rfind("raytree render cone --size 36x24", 0), 0u) << command;
+    const std::string line = RAYTREE_PROGRAM + command.substr(7) + " --quiet -o " + png;
+    ASSERT_EQ(std::system(line.c_str()), 0) << line;
+    const DecodedImage again = read_image_file(png);
+    const DecodedImage charted =
+        read_image_file(folder.path("chart") + "/pictures/" + point["key"].get<std::string>() + ".png");
+    EXPECT_EQ(again.planes, charted.planes) << command;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 8u);
+}
+
+TEST(ChartCommand, GoesOnWhereItStoppedAndStartsAfreshOnRequest) {
+  const TemporaryFolder folder;
+  const auto words = small_chart(folder, "cone", "chart");
+  ASSERT_EQ(run_program(words).status, 0);
+  const Json before = chart_in(folder, "chart");
+  const ProgramResult again = run_program(words);
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(contains(again.err, std::to_string(before["points"].size()) + " of them from before")) << again.err;
+  const Json after = chart_in(folder, "chart");
+  ASSERT_GE(after["points"].size(), before["points"].size());
+  for (std::size_t i = 0; i < before["points"].size(); ++i) {
+    const Json &then = before["points"][i], &now = after["points"][i];
+    EXPECT_EQ(then["key"], now["key"]);
+    EXPECT_EQ(then["errors"].dump(), now["errors"].dump());
+    // Times that were taken are kept; those taken since stand behind them.
+    const auto samples = then["cpu_seconds"]["samples"].size();
+    ASSERT_GE(now["cpu_seconds"]["samples"].size(), samples);
+    EXPECT_EQ(now["cpu_seconds"]["samples"][0], then["cpu_seconds"]["samples"][0]);
+  }
+  // Another subject, or --fresh, keeps nothing.
+  EXPECT_FALSE(contains(run_program(with(words, {"--set", "render.depth=3"})).err, "from before"));
+  EXPECT_FALSE(contains(run_program(with(words, {"--set", "render.depth=3", "--fresh"})).err, "from before"));
+}
+
+TEST(ChartCommand, AnInterruptionKeepsWhatIsDone) {
+  const TemporaryFolder folder;
+  ProgramOptions options;
+  options.signal = SIGINT;
+  options.signal_after = 2;
+  const ProgramResult result = run_program(
+      {"chart", "cone", "-o", folder.path("chart"), "--size", "120x80", "--budget", "40s", "--threads", "1"}, options);
+  EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
+  EXPECT_LT(result.seconds_after_signal, 1.0);
+  const Json chart = chart_in(folder, "chart");
+  EXPECT_EQ(chart["complete"], false);
+  EXPECT_GE(chart["points"].size(), 1u);
+  EXPECT_TRUE(contains(file_text(folder.path("chart") + "/chart.html"), "interrupted"));
+}
+
+// 144 samples a pixel and a single level of a tree that needs many: slower than the scene's own settings, and wrong.
+TEST(ChartCommand, APlantedDominatedSettingNeverReachesTheFront) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_program({"chart", "glass", "-o", folder.path("chart"), "--size", "36x24", "--budget",
+                                            "3s", "--also", "--antialias grid:12 --depth 1"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json chart = chart_in(folder, "chart");
+  std::size_t planted = chart["points"].size();
+  for (std::size_t i = 0; i < chart["points"].size(); ++i)
+    if (chart["points"][i]["knob"] == "added") planted = i;
+  ASSERT_LT(planted, chart["points"].size());
+  EXPECT_TRUE(contains(chart["points"][planted]["command"], "--antialias grid:12 --depth 1"));
+  for (const char* metric : {"rmse", "flip"}) {
+    const Json& front = chart["fronts"][metric];
+    EXPECT_FALSE(front.empty());
+    EXPECT_EQ(std::count(front.begin(), front.end(), planted), 0) << metric;
+  }
+  const std::string svg = file_text(folder.path("chart") + "/chart.svg");
+  EXPECT_TRUE(contains(svg, "<circle class=\"point\" data-point=\"" + std::to_string(planted) + "\"")) << "greyed";
+}
+
+TEST(ChartInput, RefusesWhatItCannotDo) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path("chart");
+  const auto wrong = [&](const std::vector<std::string>& flags, const std::vector<std::string>& parts) {
+    expect_bad_input(with({"chart", "cone", "-o", out}, flags), parts);
+  };
+  expect_bad_input({"chart", "cone"}, {"no output", "-o"});
+  expect_bad_input({"chart", "-o", out}, {"no scene"});
+  expect_bad_input({"chart", "conee", "-o", out}, {"conee", "did you mean cone"});
+  expect_bad_input({"chart", "cone", "-o", folder.path("no/such")}, {"there is no folder"});
+  expect_bad_input({"chart", "cone", "-o", folder.write("file", "")}, {"is a file", "folder"});
+  for (const char* budget : {"0s", "-2m", "soon", "", "3d", "200h"}) wrong({"--budget", budget}, {"--budget"});
+  wrong({"--size", "big"}, {"--size", "WxH"});
+  wrong({"--camera", "nobody"}, {"--camera", "nobody"});
+  wrong({"--set", "render.deepth=3"}, {"deepth"});
+  wrong({"--also", "--shading gourad"}, {"--shading", "did you mean gouraud"});
+  wrong({"--also", "--sieze 3"}, {"unknown flag --sieze"});
+  wrong({"--also", "--help"}, {"help is no setting"});
+  wrong({"--also", "--set 'a"}, {"quote"});
+  wrong({"--threads", "0"}, {"--threads"});
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
+  std::filesystem::create_directory(out);
+  write_text(out + "/chart.json", "[]");
+  wrong({"--budget", "1s"}, {"chart.json", "is no chart"});
+}
+
+/// First of the names that the shell finds; empty: none.
+std::string browser() {
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
+    if (std::system((std::string("command -v ") + name + " >/dev/null 2>&1").c_str()) == 0) return name;
+  return "";
+}
+
+/// Appended to the page: clicks a point that nothing covers, where it is drawn, and leaves what the page says of it.
+constexpr const char* kClick = R"(<script>
+addEventListener("load", () => {
+  const svg = [...document.querySelectorAll("svg.chart")].find(e => e.style.display !== "none");
+  svg.scrollIntoView();
+  let clicked = -1;
+  for (const point of [...svg.querySelectorAll("circle.point")].reverse()) {
+    const box = point.getBoundingClientRect();
+    const at = [box.left + box.width / 2, box.top + box.height / 2];
+    const target = document.elementFromPoint(...at);
+    if (target !== point || point.dataset.point === "0") continue;
+    target.dispatchEvent(new MouseEvent("click", { bubbles: true, clientX: at[0], clientY: at[1] }));
+    clicked = Number(point.dataset.point);
+    break;
+  }
+  const rows = () => [...document.querySelectorAll("#table tbody tr")].map(r => Number(r.cells[6].dataset.value));
+  document.querySelectorAll("#table th")[6].click();
+  const sorted = rows().every((v, i, all) => i === 0 || all[i - 1] <= v);
+  const result = { clicked, command: document.getElementById("command").textContent, rows: rows().length, sorted,
+    a: document.getElementById("picture-a").value };
+  setTimeout(() => {
+    const canvas = document.getElementById("canvas-a");
+    const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    result.drawn = data.some((v, i) => i % 4 !== 3 && v > 0);
+    result.map = document.getElementById("map-words").textContent;
+    document.body.innerHTML = "<pre id='result'></pre>";
+    document.getElementById("result").textContent = "RESULT" + btoa(JSON.stringify(result)) + "END";
+  }, 500);
+});
+</script>)";
+
+std::string decoded_base64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string decoded;
+  unsigned bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    const std::size_t digit = digits.find(c);
+    if (digit == std::string::npos) break;
+    bits = bits << 6 | static_cast<unsigned>(digit);
+    count += 6;
+    if (count >= 8) decoded += static_cast<char>(bits >> (count -= 8) & 0xff);
+  }
+  return decoded;
+}
+
+TEST(ChartPage, AClickInABrowserShowsTheCommandOfThePoint) {
+  const std::string chromium = browser();
+  if (chromium.empty()) {
+    std::fprintf(stderr, "LEFT OUT: no chromium to open the page with; install the package chromium\n");
+    GTEST_SKIP() << "no chromium";
+  }
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_program(small_chart(folder, "cone", "chart")).status, 0);
+  const std::string page = folder.write("page.html", file_text(folder.path("chart") + "/chart.html") + kClick);
+  const std::string dump = folder.path("dump.html");
+  const std::string line = "HOME=" + folder.folder().string() + " timeout 60 " + chromium +
+                           " --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --window-size=1300,2400 "
+                           "--virtual-time-budget=5000 --user-data-dir=" +
+                           folder.path("profile") + " --dump-dom file://" + page + " >" + dump + " 2>/dev/null";
+  ASSERT_EQ(std::system(line.c_str()), 0) << line;
+  const std::string text = file_text(dump);
+  // The page's script, which says the word too, is gone with the rest of the body.
+  const std::size_t last = text.find("RESULT");
+  ASSERT_NE(last, std::string::npos) << text.substr(0, 400);
+  const Json result = Json::parse(decoded_base64(text.substr(last + 6)));
+  const Json chart = chart_in(folder, "chart");
+  ASSERT_GT(result["clicked"], 0) << result;
+  const Json& point = chart["points"][result["clicked"].get<std::size_t>()];
+  EXPECT_EQ(result["command"], point["command"]);
+  EXPECT_EQ(result["a"], std::to_string(result["clicked"].get<int>())) << "its picture is the one looked at";
+  EXPECT_EQ(result["rows"], chart["points"].size());
+  EXPECT_EQ(result["sorted"], true) << "by RMSE after a click on the column's head";
+  EXPECT_EQ(result["drawn"], true);
+  EXPECT_TRUE(contains(result["map"], "of the pixels differ by more than 1")) << result;
+}
+
+}  // namespace
+}  // namespace raytree::test
