@@ -105,34 +105,37 @@ GridList joined_grids(const QuadList& quads, std::span<const Vec3f> positions) {
   grids.quads = quads.size();
   std::vector<bool> taken(quads.size(), false);
   std::vector<Placed> cells, row;
+  // The row of free quads across side `side` of one that lies there, if it is whole and a row itself.
+  const auto next_row = [&](const Placed* beside, std::size_t across, std::uint32_t side, std::uint32_t meeting) {
+    row.clear();
+    Placed next, neighbor;
+    for (std::size_t i = 0; i < across; ++i) {
+      if (!neighbors.across(beside[i], side, meeting, next) || taken[next.quad]) return false;
+      if (i > 0 && (!neighbors.across(row.back(), kRight, kLeft, neighbor) || neighbor.quad != next.quad)) return false;
+      row.push_back(next);
+    }
+    // A narrow band that closes on itself would come twice.
+    for (std::size_t i = 0; i < across; ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        if (row[i].quad == row[k].quad) return false;
+    for (const Placed& placed : row) taken[placed.quad] = true;
+    return true;
+  };
   for (std::uint32_t first = 0; first < quads.size(); ++first) {
     if (taken[first]) continue;
     cells.assign(1, {first, 0});
     taken[first] = true;
     Placed next;
-    while (cells.size() < kMostGridQuads && neighbors.across(cells.back(), kRight, kLeft, next) && !taken[next.quad]) {
-      taken[next.quad] = true;
-      cells.push_back(next);
-    }
+    while (cells.size() < kMostGridQuads && neighbors.across(cells.back(), kRight, kLeft, next) && !taken[next.quad])
+      taken[next.quad] = true, cells.push_back(next);
+    while (cells.size() < kMostGridQuads && neighbors.across(cells.front(), kLeft, kRight, next) && !taken[next.quad])
+      taken[next.quad] = true, cells.insert(cells.begin(), next);
     const std::size_t across = cells.size();
     std::uint32_t along = 1;
-    for (; along < kMostGridQuads; ++along) {
-      row.clear();
-      for (std::size_t i = 0; i < across; ++i) {
-        const bool fits = neighbors.across(cells[cells.size() - across + i], kUp, kDown, next) && !taken[next.quad];
-        Placed beside;
-        if (!fits || (i > 0 && (!neighbors.across(row.back(), kRight, kLeft, beside) || beside.quad != next.quad)))
-          break;
-        taken[next.quad] = true;
-        row.push_back(next);
-      }
-      if (row.size() == across) {
-        cells.insert(cells.end(), row.begin(), row.end());
-        continue;
-      }
-      for (const Placed& given_back : row) taken[given_back.quad] = false;
-      break;
-    }
+    for (; along < kMostGridQuads && next_row(&cells[cells.size() - across], across, kUp, kDown); ++along)
+      cells.insert(cells.end(), row.begin(), row.end());
+    for (; along < kMostGridQuads && next_row(cells.data(), across, kDown, kUp); ++along)
+      cells.insert(cells.begin(), row.begin(), row.end());
     const auto width = static_cast<std::uint32_t>(across) + 1;
     grids.tiles.push_back({static_cast<std::uint32_t>(grids.points.size()), width, along + 1});
     for (std::uint32_t j = 0; j <= along; ++j) {
