@@ -76,9 +76,9 @@ Json scene_json(const BenchReport& report) {
 std::string range_text(const Spread& spread) { return fmt::format("{:.3g}-{:.3g}", spread.low, spread.high); }
 
 std::string builds_text(const BenchReport& report) {
-  std::string text = fmt::format("{:<38} {:>9} {:>9} {:>9}\n", "built", "seconds", "B each", "B at peak");
+  std::string text = fmt::format("{:<50} {:>9} {:>9} {:>9}\n", "built", "seconds", "B each", "B at peak");
   for (const BenchBuild& build : report.builds) {
-    text += fmt::format("  {:<36} {:>9.4f} {:>9.1f} {:>9.1f}", build.scene, build.seconds.median,
+    text += fmt::format("  {:<48} {:>9.4f} {:>9.1f} {:>9.1f}", build.scene, build.seconds.median,
                         bytes_each(report, build.bytes), bytes_each(report, build.peak_bytes));
     if (build.triangles_per_primitive > 1)
       text += fmt::format("  {:.2f} triangles in one", build.triangles_per_primitive);
@@ -92,12 +92,12 @@ std::string rows_text(const BenchReport& report) {
   for (const BenchRow& row : report.rows) {
     if (row.rays_name != kind) {
       kind = row.rays_name;
-      text += fmt::format("{:<38} {:>8} {:>13} {:>7} {:>13} {:>6} {:>9} {:>9} {:>7}  {}\n", kind, "Mrays/s",
+      text += fmt::format("{:<50} {:>8} {:>13} {:>7} {:>13} {:>6} {:>9} {:>9} {:>7}  {}\n", kind, "Mrays/s",
                           "quartiles", "ratio", "quartiles", "beside", "rays", "hits", "differ", "checksum");
     }
     const std::string beside = row.beside.empty() ? "" : fmt::format("{:.2f}", row.beside_ratio.median);
     text +=
-        fmt::format("  {:<36} {:>8.3g} {:>13} {:>7.3g} {:>13} {:>6} {:>9} {:>9} {:>7}  {:016x}{}{}\n",
+        fmt::format("  {:<48} {:>8.3g} {:>13} {:>7.3g} {:>13} {:>6} {:>9} {:>9} {:>7}  {:016x}{}{}\n",
                     row.configuration, row.speed.median, range_text(row.speed), row.ratio.median, range_text(row.ratio),
                     beside, with_commas(row.rays), with_commas(row.hits), with_commas(row.differ), row.checksum,
                     row.differ > row.may_differ

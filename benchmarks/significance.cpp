@@ -9,6 +9,10 @@
 namespace raytree::benchmarks {
 namespace {
 
+/// So many pairs of samples are counted out exactly; beyond, U is as good as normal, its mean n m / 2 and its variance
+/// n m (n + m + 1) / 12 (Mann and Whitney 1947), with half a step for continuity.
+constexpr std::size_t kMostExactPairs = 1600;
+
 /// [u] share of choices of n ranks among n + m that give U = u.
 std::vector<double> rank_sum_shares(std::size_t n, std::size_t m) {
   // Row by row in n: ways[j][u] for n' <= n samples against j of the others.

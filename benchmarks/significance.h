@@ -26,7 +26,7 @@ inline constexpr double kChance = 0.01;
 /// lies, what else the machine does. Less than that is no change, however sure the ranks.
 inline constexpr double kBetweenProcesses = 0.03;
 
-/// Compares speeds before and after. Rank-sum test (Wilcoxon 1945; Mann and Whitney 1947), exact: U counts the pairs of
+/// Compares speeds before and after. Rank-sum test (Wilcoxon 1945; Mann and Whitney 1947): U counts the pairs of
 /// which the sample after is the higher (ties half). If nothing changed, every choice of which n of the n + m ranks are
 /// "before" is as likely as any other, so P(U = u) is the number of choices with that u over all binomial(n + m, n);
 /// the numbers follow from c(n, m, u) = c(n - 1, m, u - m) + c(n, m - 1, u). It asks nothing of the noise's shape,

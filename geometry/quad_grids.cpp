@@ -19,7 +19,7 @@ int shared_edge(const std::uint32_t* a, const std::uint32_t* b) {
   return -1;
 }
 
-/// A quad as it stands in a grid: `turn` is the corner at the grid's (0, 0) side, 0 or 2, which keep the diagonal.
+/// A quad as it stands in a grid: corner `turn` lies toward the grid's (0, 0).
 struct Placed {
   std::uint32_t quad = 0, turn = 0;
 };
@@ -51,12 +51,12 @@ class Neighbors {
     }
   }
 
-  /// The quad across side `side` of a placed one that meets it with its own side `meeting`, if its diagonal fits.
+  /// The quad across side `side` of a placed one, placed so that it meets that with its side `meeting`; false: none.
   bool across(const Placed& from, std::uint32_t side, std::uint32_t meeting, Placed& to) const {
     const std::uint32_t found = across_[from.quad * 4 + (side + from.turn) % 4];
     if (found == kNoSide) return false;
     to = {found / 4, (found % 4 + 4 - meeting) % 4};
-    return to.turn % 2 == 0;
+    return true;
   }
 
  private:

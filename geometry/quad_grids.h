@@ -1,5 +1,5 @@
-// Triangles joined again: pairs into quads, quads into grids. The same surface to the last triangle, in the forms that
-// Embree also takes; for benchmarks that compare them.
+// Triangles joined again: pairs into quads, quads into grids: the forms that Embree also takes, for benchmarks that
+// compare them. Quads are the same surface to the last triangle.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,9 @@ struct GridList {
   std::size_t quads = 0;
 };
 
-/// Joins quads across edges that two of them share, where that keeps every quad's diagonal, into grids of up to
-/// kMostGridQuads x kMostGridQuads. Every quad goes into one; those without fitting neighbors are grids of their own.
+/// Joins quads across edges that two of them share into grids of up to kMostGridQuads x kMostGridQuads. Every quad goes
+/// into one; those without fitting neighbors are grids of their own. Where quads are halved along one diagonal or the
+/// other, as suits each, grids are not: Embree halves all of a grid alike, and the surface differs by as much.
 GridList joined_grids(const QuadList& quads, std::span<const Vec3f> positions);
 
 }  // namespace raytree

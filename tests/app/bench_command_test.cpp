@@ -79,7 +79,8 @@ TEST(BenchCommand, AsksAFilesRays) {
   TemporaryFolder folder;
   // From above: one at the spheres' floor, one into the sky.
   const std::string rays = folder.write("rays.npy", npy_file({0, 9, 0, 0, -1, 0, 0, 9, 0, 0, 1, 0}, 6));
-  const ProgramResult result = run_bench({"--rays", rays, "--json", "--filter", "file/(seam|triangles/robust/medium/1$)"});
+  const ProgramResult result =
+      run_bench({"--rays", rays, "--json", "--filter", "file/(seam|triangles/robust/medium/1$)"});
   ASSERT_EQ(result.status, 0) << result.err << result.out;
   const Json rows = Json::parse(result.out)["scenes"][0]["rows"];
   ASSERT_EQ(rows.size(), 2u);
@@ -104,7 +105,8 @@ TEST(BenchCommand, WrongInputIsNamed) {
   expect_bad_input({"bench", "spheres-1980", "--repetitions", "0"}, {"--repetitions", "0 is not within 1 and 10000"});
   expect_bad_input({"bench", "spheres-1980", "--filter", "a("}, {"--filter", "a("});
   expect_bad_input({"bench", "spheres-1980", "--size", "16x12", "--filter", "nothing"}, {"nothing", "--list"});
-  expect_bad_input({"bench", "spheres-1980", "--size", "16x12", "--against", "quads"}, {"--against", "quads", "--list"});
+  expect_bad_input({"bench", "spheres-1980", "--size", "16x12", "--against", "quads"},
+                   {"--against", "quads", "--list"});
   expect_bad_input({"bench", "spheres-1980", "--budget", "soon"}, {"--budget", "soon"});
   expect_bad_input({"bench", "spheres-1980", "--budget", "0s"}, {"--budget", "60s"});
   expect_bad_input({"bench", "standard", "--rays", "a.npy"}, {"--rays"});

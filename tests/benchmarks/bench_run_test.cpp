@@ -230,7 +230,7 @@ TEST(EdgeRays, PassThroughEdgesAndAreTheSameEachTime) {
       const Vec3d across = d.cross(b - a);
       if (across.length() < 1e-12) continue;
       // Where the ray's line comes nearest to the edge's, and whether that lies on the edge.
-      const double along = (o - a).cross(d).dot(across) / across.dot(across);
+      const double along = -(o - a).cross(d).dot(across) / across.dot(across);
       if (along < -1e-3 || along > 1 + 1e-3) continue;
       least = std::min(least, std::abs((a - o).dot(across)) / across.length());
     }

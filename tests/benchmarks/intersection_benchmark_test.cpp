@@ -91,7 +91,7 @@ TEST(IntersectionBenchmark, FewerBatchesAreSpreadOverThePicture) {
   for (std::size_t k = 0; k < 5; ++k)
     for (const std::size_t i : {std::size_t(0), std::size_t(500), kBenchmarkBatch - 1})
       EXPECT_EQ(part.batches[k].direction(i), whole.batches[15 * k].direction(i));
-  EXPECT_EQ(thinned(benchmark_rays(scene)[0], 3).batches.size(), 3u);
+  EXPECT_EQ(thinned(std::move(benchmark_rays(scene)[0]), 3).batches.size(), 3u);
 }
 
 }  // namespace

@@ -40,9 +40,9 @@ TEST(Significance, NothingChangedIsSaidOfEqualDistributionsInAtLeast95OfAHundred
       int changed = 0;
       constexpr int kTrials = 400;
       for (int trial = 0; trial < kTrials; ++trial)
-        changed += compare_speeds(synthetic_speeds(random, 5, 0.02, count), synthetic_speeds(random, 5, 0.02, count),
-                                  least)
-                       .change != Change::none;
+        changed +=
+            compare_speeds(synthetic_speeds(random, 5, 0.02, count), synthetic_speeds(random, 5, 0.02, count), least)
+                .change != Change::none;
       EXPECT_LE(changed, kTrials / 20) << count << " samples, " << least;
     }
 }
@@ -72,7 +72,15 @@ TEST(Significance, SmallOrFewIsNoChange) {
   EXPECT_EQ(compare_speeds({}, {9}).change, Change::too_few);
 }
 
-TEST(Significance, HundredsOfSamplesKeepTheirShares) {
+TEST(Significance, ManySamplesGoByTheNormalDistributionThatFewOnesTendTo) {
+  // The same shift on both sides of the change from exact shares to the normal distribution.
+  const auto chance = [](int count) {
+    std::vector<double> before, after;
+    for (int i = 0; i < count; ++i) before.push_back(i), after.push_back(i + 0.2 * count);
+    return compare_speeds(before, after, 0).chance;
+  };
+  EXPECT_NEAR(chance(41), chance(40), 0.01);
+  EXPECT_GT(chance(40), 0.01);
   std::vector<double> before, after;
   for (int i = 0; i < 200; ++i) before.push_back(i), after.push_back(i + 0.5);
   EXPECT_GT(compare_speeds(before, after, 0).chance, 0.5);

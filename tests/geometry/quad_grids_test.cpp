@@ -88,6 +88,20 @@ TEST(QuadGrids, HoldTheTrianglesThatTheyWereMadeOf) {
   }
 }
 
+TEST(QuadGrids, GridsJoinQuadsThatAreHalvedEitherWay) {
+  Sheet sheet(16, 8, false);
+  const Sheet other(16, 8, true);
+  for (std::size_t quad = 0; quad < 16 * 8; quad += 3)
+    std::copy_n(other.corners.begin() + static_cast<std::ptrdiff_t>(6 * quad), 6,
+                sheet.corners.begin() + static_cast<std::ptrdiff_t>(6 * quad));
+  const QuadList quads = joined_quads(sheet.corners);
+  EXPECT_EQ(quads.paired, 16u * 8);
+  EXPECT_EQ(triangles_of(quads, sheet), triangles_of(sheet));
+  const GridList grids = joined_grids(quads, sheet.positions);
+  EXPECT_EQ(grids.tiles.size(), 2u);
+  EXPECT_EQ(triangles_of(grids).size(), triangles_of(sheet).size());
+}
+
 TEST(QuadGrids, TrianglesWithoutAPartnerStay) {
   Sheet sheet(2, 1, false);
   sheet.corners.resize(9);  // one and a half quads
