@@ -51,15 +51,22 @@ Comparison compare_speeds(const std::vector<double>& before, const std::vector<d
   double wins = 0;
   for (const double a : after)
     for (const double b : before) wins += a > b ? 1.0 : a == b ? 0.5 : 0.0;
-  const std::vector<double> shares = rank_sum_shares(n, m);
-  // Distributions are symmetric: the smaller tail twice. Ties leave U between two whole numbers: the larger tail
+  // The distribution is symmetric: the smaller tail twice. Ties leave U between two whole numbers: the larger tail
   // counts.
-  const double all = static_cast<double>(n * m);
-  const auto tail = static_cast<std::size_t>(std::ceil(std::min(wins, all - wins)));
-  double chance = 0;
-  for (std::size_t u = 0; u <= tail; ++u) chance += shares[u];
-  result.chance = std::min(1.0, 2 * chance);
-  if (2 * shares[0] >= kChance)
+  const double all = static_cast<double>(n * m), tail = std::ceil(std::min(wins, all - wins));
+  double least_chance = 0;
+  if (n * m <= kMostExactPairs) {
+    const std::vector<double> shares = rank_sum_shares(n, m);
+    double chance = 0;
+    for (std::size_t u = 0; u <= static_cast<std::size_t>(tail); ++u) chance += shares[u];
+    result.chance = std::min(1.0, 2 * chance), least_chance = 2 * shares[0];
+  } else {
+    const double deviation = std::sqrt(all * static_cast<double>(n + m + 1) / 12);
+    result.chance = std::min(1.0, std::erfc((all / 2 - tail - 0.5) / (std::sqrt(2.0) * deviation)));
+    // One sample can be the highest of many by chance; two of so many can hardly.
+    if (std::min(n, m) == 1) least_chance = 2.0 / static_cast<double>(n + m);
+  }
+  if (least_chance >= kChance)
     result.change = Change::too_few;
   else if (result.chance < kChance && std::abs(result.ratio - 1) > least)
     result.change = result.ratio > 1 ? Change::faster : Change::slower;

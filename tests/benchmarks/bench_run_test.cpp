@@ -66,7 +66,9 @@ TEST(BenchRun, AllConfigurationsFindTheSameOfEveryKindOfRay) {
     EXPECT_GT(baseline->hits, 0u);
     EXPECT_TRUE(baseline->beside.empty());
     const BenchRow* quads = row_named(report, "primary/quads/robust/medium/8-coherent");
-    if (quads != nullptr) EXPECT_EQ(quads->beside, "triangles/robust/medium/8-coherent");
+    if (quads != nullptr) {
+      EXPECT_EQ(quads->beside, "triangles/robust/medium/8-coherent");
+    }
     EXPECT_NE(row_named(report, "primary/naive"), nullptr);
     EXPECT_NE(row_named(report, "primary/seam"), nullptr);
     EXPECT_EQ(row_named(report, "primary/seam")->differ, 0u);
@@ -221,7 +223,9 @@ TEST(EdgeRays, PassThroughEdgesAndAreTheSameEachTime) {
   for (std::size_t i = 0; i < 40; ++i) {
     EXPECT_EQ(batch.direction(i), again.batches[0].direction(i));
     EXPECT_EQ(batch.origin(i), again.batches[0].origin(i));
-    if (i % 2 == 0) EXPECT_EQ(batch.origin(i), eye);
+    if (i % 2 == 0) {
+      EXPECT_EQ(batch.origin(i), eye);
+    }
     // The least distance between the ray and any edge, over the mesh's size.
     const Vec3d o(batch.origin(i)), d(batch.direction(i));
     double least = 1e30;
