@@ -23,9 +23,6 @@ using benchmarks::BenchRow;
 
 constexpr int kMostRepetitions = 10000;
 constexpr const char* kStandardSet = "standard";
-/// Batches of eye rays that are made where a time is set, so that fast machines have more to do in it.
-constexpr std::size_t kMostBatches = 256;
-
 struct BenchOptions {
   SceneFlags scene;
   int threads = 0, repetitions = 9;
@@ -117,7 +114,7 @@ class Bench {
     const auto start = Clock::now();
     return with_prepared_scene(run, [&](Scene& scene, const Interruption& interruption) {
       if (!name.empty()) scene.description.name = name;
-      const std::size_t batches = options_.list ? 1 : seconds > 0 ? kMostBatches : benchmarks::kBenchBatches;
+      const std::size_t batches = options_.list ? 1 : benchmarks::batches_for(seconds);
       const std::vector<benchmarks::BenchRays> rays = file_rays_.empty()
                                                           ? benchmarks::bench_rays(scene, batches, &interruption.stop())
                                                           : benchmarks::bench_rays(scene, file_rays_);

@@ -33,6 +33,15 @@ BenchRays bench_rays_of(std::string name, RaySet rays, const ShapeSet& shapes) {
 
 }  // namespace
 
+std::size_t batches_for(double seconds) {
+  constexpr std::size_t kLeast = 4, kMost = 256;
+  if (seconds <= 0) return kBenchBatches;
+  // A minute for a scene's 60 kinds of rows or so, ten passes each, asks some 0.2 million rays a row.
+  std::size_t batches = kLeast;
+  while (batches < kMost && static_cast<double>(2 * batches) <= 4 * seconds) batches *= 2;
+  return batches;
+}
+
 std::vector<BenchRays> bench_rays(const Scene& scene, std::size_t most_batches, const std::atomic<bool>* stop) {
   std::vector<BenchRays> result;
   auto sets = benchmark_rays(scene, stop, most_batches);

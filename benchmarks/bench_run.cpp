@@ -49,6 +49,9 @@ double differing_share(const BenchConfiguration& configuration, const std::strin
 }
 constexpr double kAlwaysMayDiffer = 2;
 
+/// Repetitions that quartiles can be made of; fewer are not worth their time.
+constexpr int kLeastRepetitions = 3;
+
 /// Rays of each batch where all of them together are fewer than one batch: a packet.
 constexpr std::size_t kFewOfBatch = 8;
 
@@ -249,7 +252,7 @@ class BenchRun {
       return timed_pass(
           kind.rays, threads,
           [&](std::size_t batch, HitBatch& hits, std::uint8_t* occluded) {
-            return ask_tracer(*subject.asked->seam, kind.rays, batch, hits, occluded);
+            return ask_tracer<RunningTime>(*subject.asked->seam, kind.rays, batch, hits, occluded);
           },
           look);
     const RaySet& rays = kind.bare();
@@ -328,7 +331,7 @@ class BenchRun {
     // Few rays are a few of many batches, so that they are the picture's, not a corner's.
     const auto few = [&](std::size_t rays) { return part_of(kind, rays / kFewOfBatch, kFewOfBatch); };
     if (seconds <= 0) return naive ? few(kNaiveRays) : part_of(kind, kBenchBatches, kBenchmarkBatch);
-    const BenchRays trial = naive ? few(2 * kFewOfBatch) : part_of(kind, 1, kBenchmarkBatch);
+    const BenchRays trial = naive ? few(2 * kFewOfBatch) : part_of(kind, 2, kBenchmarkBatch);
     double round = 0;
     for (int i = 0; i < 2; ++i) {  // the second counts: the first finds cold caches
       const auto start = Clock::now();
@@ -362,12 +365,16 @@ class BenchRun {
           std::max(differing_share(subject.configuration, kind.name), differing_share(baseline_, kind.name));
       row.may_differ = static_cast<std::uint64_t>(kAlwaysMayDiffer + share * static_cast<double>(row.rays));
     }
-    for (int repetition = 0; repetition < options_.repetitions && !stopped(); ++repetition)
+    const auto start = Clock::now();
+    for (int repetition = 0; repetition < options_.repetitions && !stopped(); ++repetition) {
+      // What the trial foretold may not have come: a machine that is busy with other things.
+      if (seconds > 0 && repetition >= kLeastRepetitions && seconds_since(start) > seconds) break;
       for (Subject& subject : subjects) {
         const PassResult result = pass(subject, kind);
         subject.seconds.push_back(result.seconds);
         subject.row.repeatable &= result.hits == subject.row.hits && result.checksum == subject.row.checksum;
       }
+    }
     finish_rows(subjects);
   }
 

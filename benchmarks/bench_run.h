@@ -33,6 +33,8 @@ std::vector<BenchRays> bench_rays(const Scene& scene, const std::vector<FileRay>
 
 /// Batches of 1024 rays of each kind where no time is set.
 inline constexpr std::size_t kBenchBatches = 32;
+/// Batches of each kind that are worth making where so many seconds are set; 0: kBenchBatches.
+std::size_t batches_for(double seconds);
 /// Rays of each kind for the naive tracer, which takes a thousand times as long.
 inline constexpr std::size_t kNaiveRays = 64;
 

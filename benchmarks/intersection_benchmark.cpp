@@ -39,21 +39,6 @@ Vec3f bounced(const Vec3f& normal, std::uint64_t key) {
   return sum.dot(sum) > 1e-6f ? unit(sum) : normal;
 }
 
-/// A batch's rays where a render has them when it asks: in the nearest caches, not in main memory.
-const RayBatch& warmed(const RayBatch& batch) {
-  thread_local RayBatch copy(kBenchmarkBatch);
-  copy.size = batch.size;
-  const auto copy_array = [&](float* to, const float* from) { std::copy(from, from + batch.size, to); };
-  copy_array(copy.origin_x, batch.origin_x);
-  copy_array(copy.origin_y, batch.origin_y);
-  copy_array(copy.origin_z, batch.origin_z);
-  copy_array(copy.direction_x, batch.direction_x);
-  copy_array(copy.direction_y, batch.direction_y);
-  copy_array(copy.direction_z, batch.direction_z);
-  copy_array(copy.max_distance, batch.max_distance);
-  return copy;
-}
-
 /// Folds one answer into a checksum.
 std::uint64_t folded(std::uint64_t sum, std::uint64_t word) { return (std::rotl(sum, 5) ^ word) * 0x9e3779b97f4a7c15u; }
 
@@ -79,6 +64,20 @@ void look_at_occlusion(const RayBatch& batch, const std::uint8_t* occluded, Pass
 void add_ray(RaySet& set, const Vec3f& origin, const Vec3f& direction, float end) {
   if (set.batches.empty() || set.batches.back().size == kBenchmarkBatch) set.batches.emplace_back(kBenchmarkBatch);
   set.batches.back().push(origin, direction, end);
+}
+
+const RayBatch& warmed(const RayBatch& batch) {
+  thread_local RayBatch copy(kBenchmarkBatch);
+  copy.size = batch.size;
+  const auto copy_array = [&](float* to, const float* from) { std::copy(from, from + batch.size, to); };
+  copy_array(copy.origin_x, batch.origin_x);
+  copy_array(copy.origin_y, batch.origin_y);
+  copy_array(copy.origin_z, batch.origin_z);
+  copy_array(copy.direction_x, batch.direction_x);
+  copy_array(copy.direction_y, batch.direction_y);
+  copy_array(copy.direction_z, batch.direction_z);
+  copy_array(copy.max_distance, batch.max_distance);
+  return copy;
 }
 
 RaySet thinned(RaySet rays, std::size_t most) {
@@ -182,17 +181,6 @@ ReplayCalls calls_of(const EmbreeIntersector& embree) {
   return calls;
 }
 
-double ask_tracer(const RayIntersector& tracer, const RaySet& rays, std::size_t batch, HitBatch& hits,
-                  std::uint8_t* occluded) {
-  const RayBatch& warm = warmed(rays.batches[batch]);
-  const auto start = Clock::now();
-  if (rays.occlusion)
-    tracer.occluded(warm, rays.coherence, occluded);
-  else
-    tracer.intersect(warm, rays.coherence, hits);
-  return seconds_since(start);
-}
-
 PassResult timed_pass(const RaySet& rays, int threads, const AskBatch& ask, const LookAtBatch& look) {
   std::vector<PassResult> results(rays.batches.size());
   tbb::task_arena arena(threads);
@@ -224,7 +212,7 @@ PassResult timed_pass(const RaySet& rays, int threads, const AskBatch& ask, cons
 
 PassResult batched_pass(const Scene& scene, const RaySet& rays, int threads) {
   return timed_pass(rays, threads, [&](std::size_t batch, HitBatch& hits, std::uint8_t* occluded) {
-    return ask_tracer(*scene.intersector, rays, batch, hits, occluded);
+    return ask_tracer<WallTime>(*scene.intersector, rays, batch, hits, occluded);
   });
 }
 

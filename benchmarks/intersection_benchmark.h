@@ -12,6 +12,7 @@
 #include "geometry/embree_replay.h"
 #include "geometry/ray_batch.h"
 #include "geometry/ray_intersector.h"
+#include "geometry/stopwatch.h"
 #include "renderer/scene.h"
 
 namespace raytree::benchmarks {
@@ -65,9 +66,22 @@ using AskBatch = std::function<double(std::size_t batch, HitBatch& hits, std::ui
 using LookAtBatch = std::function<void(std::size_t batch, const HitBatch& hits, const std::uint8_t* occluded)>;
 PassResult timed_pass(const RaySet& rays, int threads, const AskBatch& ask, const LookAtBatch& look = {});
 
-/// Asks a tracer behind the seam about one batch, whose rays are brought into the nearest caches before the clock runs.
+/// A copy of a batch that the calling thread has just written: rays where a render has them when it asks, in the
+/// nearest caches, not in main memory. Holds until the next call.
+const RayBatch& warmed(const RayBatch& batch);
+
+/// Asks a tracer behind the seam about one batch; returns the seconds by a Stopwatch of stopwatch.h.
+template <class Stopwatch>
 double ask_tracer(const RayIntersector& tracer, const RaySet& rays, std::size_t batch, HitBatch& hits,
-                  std::uint8_t* occluded);
+                  std::uint8_t* occluded) {
+  const RayBatch& warm = warmed(rays.batches[batch]);
+  const Stopwatch time;
+  if (rays.occlusion)
+    tracer.occluded(warm, rays.coherence, occluded);
+  else
+    tracer.intersect(warm, rays.coherence, hits);
+  return time.seconds();
+}
 
 /// The rays as a record that can be replayed.
 RayRecord record_of(const RaySet& rays);

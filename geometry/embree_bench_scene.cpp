@@ -56,9 +56,9 @@ double intersect_block(RTCScene scene, const RayBatch& rays, std::size_t first, 
   for (std::size_t i = 0; i < packets * Width; ++i)
     embree::clear_hit(work.ray_hits[i / Width].hit, static_cast<int>(i % Width));
   embree::Query query(coherent);
-  const auto start = Clock::now();
+  const RunningTime time;
   for (std::size_t p = 0; p < packets; ++p) query.intersect(scene, work.valid[p], work.ray_hits[p]);
-  const double seconds = seconds_since(start);
+  const double seconds = time.seconds();
   for (std::size_t i = 0; i < size; ++i) {
     const auto& packet = work.ray_hits[i / Width];
     const std::size_t lane = i % Width;
@@ -75,9 +75,9 @@ double intersect_block<1>(RTCScene scene, const RayBatch& rays, std::size_t firs
   for (std::size_t i = 0; i < size; ++i)
     work[i] = embree::single_ray_hit(rays.origin(first + i), rays.direction(first + i), rays.max_distance[first + i]);
   embree::Query query(coherent);
-  const auto start = Clock::now();
+  const RunningTime time;
   for (std::size_t i = 0; i < size; ++i) query.intersect(scene, work[i]);
-  const double seconds = seconds_since(start);
+  const double seconds = time.seconds();
   for (std::size_t i = 0; i < size; ++i)
     hits.set(first + i, {work[i].hit.geomID, work[i].hit.primID, work[i].hit.u, work[i].hit.v, work[i].ray.tfar,
                          work[i].hit.instID[0]});
@@ -91,9 +91,9 @@ double occluded_block(RTCScene scene, const RayBatch& rays, std::size_t first, s
   const std::size_t packets = fill_packets<Width>(
       rays, first, size, work, [&](std::size_t p) -> auto& { return work.rays[p]; });
   embree::Query query(coherent);
-  const auto start = Clock::now();
+  const RunningTime time;
   for (std::size_t p = 0; p < packets; ++p) query.occluded(scene, work.valid[p], work.rays[p]);
-  const double seconds = seconds_since(start);
+  const double seconds = time.seconds();
   for (std::size_t i = 0; i < size; ++i)
     occluded[first + i] = work.valid[i / Width][i % Width] != 0 && work.rays[i / Width].tfar[i % Width] < 0;
   return seconds;
@@ -106,9 +106,9 @@ double occluded_block<1>(RTCScene scene, const RayBatch& rays, std::size_t first
   for (std::size_t i = 0; i < size; ++i)
     work[i] = embree::single_ray(rays.origin(first + i), rays.direction(first + i), rays.max_distance[first + i]);
   embree::Query query(coherent);
-  const auto start = Clock::now();
+  const RunningTime time;
   for (std::size_t i = 0; i < size; ++i) query.occluded(scene, work[i]);
-  const double seconds = seconds_since(start);
+  const double seconds = time.seconds();
   for (std::size_t i = 0; i < size; ++i) occluded[first + i] = work[i].tfar < 0;
   return seconds;
 }

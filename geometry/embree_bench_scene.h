@@ -50,7 +50,8 @@ class EmbreeBenchScene {
   /// Whether Embree has calls of that width of its own on this processor.
   bool has_native(int width) const noexcept;
 
-  /// The batch's nearest hits, in Embree's own numbers of geometry and primitive; returns the seconds inside the calls.
+  /// The batch's nearest hits, in Embree's own numbers of geometry and primitive; returns the seconds that
+  /// the thread ran inside the calls.
   /// Rays that no Embree may have (not finite, no direction) miss.
   double intersect(const RayBatch& rays, BenchCall call, HitBatch& hits) const noexcept;
   /// 1 for rays that something stops, else 0.
