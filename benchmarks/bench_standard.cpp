@@ -77,8 +77,8 @@ SceneDescription catmull_clark() {
 
 std::vector<StandardScene> standard_scenes(const std::vector<std::string>& mesh_files) {
   std::vector<StandardScene> scenes;
-  scenes.push_back(builtin("spd-balls", 1, 0.1));
-  scenes.push_back(builtin("spd-tree", 1, 0.1));
+  scenes.push_back(builtin("spd-balls", 1, 0.03));
+  scenes.push_back(builtin("spd-tree", 1, 0.03));
   scenes.push_back({"scattered spheres", 1, 0.3, [](Warnings&) { return scattered_spheres(); }});
   scenes.push_back({"catmull-clark", 1, 0.5, [](Warnings&) { return catmull_clark(); }});
   scenes.push_back(builtin("forest", 1, 0.5));

@@ -95,9 +95,10 @@ TEST(BenchCommand, AsksAFilesRays) {
 
 TEST(BenchCommand, KeepsToATimeAndSaysWhatItLeavesOut) {
   const ProgramResult result =
-      run_program({"bench", "standard", "--budget", "1s", "--repetitions", "1", "--filter", "primary/seam", "--quiet"});
+      run_program({"bench", "standard", "--budget", "2s", "--repetitions", "1", "--filter", "primary/seam", "--quiet"});
   ASSERT_EQ(result.status, 0) << result.err << result.out;
   EXPECT_TRUE(contains(result.out, "left out: terrain of 10 M: it would take")) << result.out;
+  EXPECT_TRUE(contains(result.out, "scene spd-balls")) << result.out;
   EXPECT_LT(result.seconds, 60);
 }
 
