@@ -120,6 +120,11 @@ class Bench {
                                                           : benchmarks::bench_rays(scene, file_rays_);
       if (interruption.stop()) return;
       if (options_.list) return list(benchmarks::bench_row_names(scene, rays, options_.threads));
+      if (!name.empty() && seconds > 0 && seconds_since(start) > seconds) {
+        report_.scenes_left_out.push_back(fmt::format("{}: {:.2g} s were there for it, and preparing it took {:.2g} s",
+                                                      name, seconds, seconds_since(start)));
+        return;
+      }
       benchmarks::BenchRunOptions run_options;
       run_options.threads = options_.threads, run_options.repetitions = options_.repetitions;
       run_options.baseline = options_.against;

@@ -76,7 +76,7 @@ TEST(Significance, ManySamplesGoByTheNormalDistributionThatFewOnesTendTo) {
   // The same shift on both sides of the change from exact shares to the normal distribution.
   const auto chance = [](int count) {
     std::vector<double> before, after;
-    for (int i = 0; i < count; ++i) before.push_back(i), after.push_back(i + 0.15 * count);
+    for (int i = 0; i < count; ++i) before.push_back(i), after.push_back(i + 6.25);
     return compare_speeds(before, after, 0).chance;
   };
   EXPECT_NEAR(chance(41), chance(40), 0.005);
