@@ -1,8 +1,9 @@
-// `raytree bench`: builds a scene's tracer and asks it rays of five kinds again and again. Nothing is shaded.
+// `raytree bench`: asks rays of a scene, of the standard set or of a file in every way that is worth comparing, side by
+// side. Nothing is shaded.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <cmath>
 
 #include "app/commands.h"
 #include "app/exit_status.h"
@@ -10,142 +11,198 @@
 #include "app/prepared_scene.h"
 #include "app/process.h"
 #include "app/render_options.h"
-#include "benchmarks/intersection_benchmark.h"
-#include "geometry/embree_intersector.h"
-#include "renderer/machine.h"
+#include "benchmarks/bench_report.h"
+#include "benchmarks/bench_standard.h"
+#include "geometry/stopwatch.h"
 
 namespace raytree::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using benchmarks::IntersectionFigure;
-using benchmarks::Spread;
+using benchmarks::BenchReport;
+using benchmarks::BenchRow;
 
 constexpr int kMostRepetitions = 10000;
-
+constexpr const char* kStandardSet = "standard";
 struct BenchOptions {
   SceneFlags scene;
   int threads = 0, repetitions = 9;
-  bool json = false, quiet = false;
+  double budget = 0;
+  std::string filter, against = benchmarks::kBenchBaseline, before, rays;
+  std::vector<std::string> meshes;
+  bool json = false, quiet = false, list = false;
+
+  bool standard() const { return scene.scene == kStandardSet; }
 };
+
+/// Seconds: "60s", "2m", "1.5h" or a number.
+double parse_budget(const std::string& text) {
+  if (text.empty()) return 0;
+  const std::size_t unit = std::string("smh").find(text.back());
+  const double number = parse_real("--budget", unit == std::string::npos ? text : text.substr(0, text.size() - 1));
+  const double seconds = number * (unit == std::string::npos ? 1 : std::pow(60.0, double(unit)));
+  if (!(seconds >= 1) || !(seconds < 1e6))
+    throw usage_error(fmt::format("--budget: \"{}\" is not a time from 1s on, for example 60s or 2m", text));
+  return seconds;
+}
 
 std::optional<BenchOptions> parse_bench_options(const Words& words) {
   BenchOptions options;
-  std::string threads;
-  CLI::App command("Measure how fast a scene's rays are intersected: batches against single rays.", "raytree bench");
+  std::string threads, budget;
+  CLI::App command(
+      "Measure how fast rays are intersected: by kind of ray, by call, by what is built, beside Whitted's own tracer. "
+      "Exit status 3 when a configuration's answers are others than it explains.",
+      "raytree bench");
   command
       .add_option("SCENE", options.scene.scene,
-                  "Scene file (.json), mesh (.obj, .ply), patches (.bpt) or built-in scene (raytree scenes)")
+                  "Scene file (.json), mesh (.obj, .ply), patches (.bpt), built-in scene (raytree scenes), or "
+                  "\"standard\": terrains, spheres, databases, an instanced forest, a Catmull-Clark surface")
       ->type_name("");
   command.add_flag("--json", options.json, "Print JSON");
-  command.add_option("--repetitions", options.repetitions, "Timed passes over each kind of ray; default: 9")
-      ->type_name("N");
+  command.add_option("--filter", options.filter, "Measure rows whose names hold a match of a regular expression")
+      ->type_name("REGEX");
+  command.add_flag("--list", options.list, "Print the names of all rows and measure nothing");
+  command.add_option("--against", options.against, "Configuration that ratios are taken to")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command
+      .add_option("--baseline", options.before,
+                  "Compare with a report that --json printed: what became faster or slower, beyond chance")
+      ->type_name("FILE");
+  command
+      .add_option("--budget", budget, "Time for all, e.g. 60s or 5m; default: 32,768 rays of each kind, however long")
+      ->type_name("TIME");
+  command
+      .add_option("--rays", options.rays,
+                  "Ask a file's rays in place of the scene's: .npy, float32, N x 6 (origin, direction) or N x 8 (and "
+                  "begin, end)")
+      ->type_name("FILE");
+  command.add_option("--mesh", options.meshes, "standard: measure a mesh file too; repeatable")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command.add_option("--repetitions", options.repetitions, "Timed passes over the rays; default: 9")->type_name("N");
   add_scene_flags(command, options.scene, false);
   add_hierarchy_flags(command, options.scene);
   command.add_option("--threads", threads, "Threads; default: all")->type_name("N");
   command.add_flag("--quiet", options.quiet, "No warnings");
   prepare_usage(command);
   if (!parse_usage(command, words)) return std::nullopt;
-  check_scene_flags(options.scene);
+  if (!options.standard()) check_scene_flags(options.scene);
   // Rays are asked again and again: what they cost is what counts, not the build.
   if (options.scene.hierarchy.empty() && options.scene.memory.empty()) options.scene.hierarchy = "balanced";
   options.threads = parse_threads(threads);
+  options.budget = parse_budget(budget);
+  benchmarks::NameFilter check(options.filter);
   if (options.repetitions < 1 || options.repetitions > kMostRepetitions)
     throw usage_error(fmt::format("--repetitions: {} is not within 1 and {}", options.repetitions, kMostRepetitions));
+  if (options.standard() && !options.rays.empty())
+    throw usage_error("--rays: a file's rays are of one scene; name it in place of \"standard\"");
+  if (!options.standard() && !options.meshes.empty())
+    throw usage_error("--mesh adds to the standard set; raytree bench FILE measures a mesh alone");
   return options;
 }
 
-struct Report {
-  std::string scene;
-  int width = 0, height = 0, threads = 0;
-  std::uint64_t triangles = 0, spheres = 0, tracer_bytes = 0;
-  double build_seconds = 0;
-  std::vector<IntersectionFigure> figures;
-
-  std::uint64_t primitives() const { return triangles + spheres; }
-  double bytes_per_primitive() const {
-    return primitives() > 0 ? static_cast<double>(tracer_bytes) / static_cast<double>(primitives()) : 0;
+class Bench {
+ public:
+  explicit Bench(const BenchOptions& options) : options_(options), start_(Clock::now()) {
+    if (!options.rays.empty()) file_rays_ = benchmarks::read_rays(options.rays);
+    report_.program = version();
+    report_.threads = options.threads, report_.repetitions = options.repetitions, report_.seconds = options.budget;
   }
+
+  /// Measures one scene within so many seconds; 0: any.
+  int measure(const SceneRun& run, double seconds, const std::string& name) {
+    const auto start = Clock::now();
+    return with_prepared_scene(run, [&](Scene& scene, const Interruption& interruption) {
+      if (!name.empty()) scene.description.name = name;
+      const std::size_t batches = options_.list ? 1 : benchmarks::batches_for(seconds);
+      const std::vector<benchmarks::BenchRays> rays = file_rays_.empty()
+                                                          ? benchmarks::bench_rays(scene, batches, &interruption.stop())
+                                                          : benchmarks::bench_rays(scene, file_rays_);
+      if (interruption.stop()) return;
+      if (options_.list) return list(benchmarks::bench_row_names(scene, rays, options_.threads));
+      if (!name.empty() && seconds > 0 && seconds_since(start) > seconds) {
+        report_.scenes_left_out.push_back(fmt::format("{}: {:.2g} s were there for it, and preparing it took {:.2g} s",
+                                                      name, seconds, seconds_since(start)));
+        return;
+      }
+      benchmarks::BenchRunOptions run_options;
+      run_options.threads = options_.threads, run_options.repetitions = options_.repetitions;
+      run_options.baseline = options_.against;
+      run_options.filter = benchmarks::NameFilter(options_.filter);
+      run_options.stop = &interruption.stop();
+      if (seconds > 0) run_options.seconds = std::max(0.1 * seconds, seconds - seconds_since(start));
+      BenchReport report = benchmarks::run_bench(scene, rays, run_options);
+      if (interruption.stop()) return;
+      if (report.rows.empty() && report.left_out.empty())
+        throw usage_error(fmt::format("--filter: \"{}\" matches no row; raytree bench {} --list shows them",
+                                      options_.filter, options_.scene.scene));
+      report_.scenes.push_back(std::move(report));
+    });
+  }
+
+  int measure_standard() {
+    const std::vector<benchmarks::StandardScene> scenes = benchmarks::standard_scenes(options_.meshes);
+    double weights = 0;
+    for (const auto& one : scenes) weights += one.weight;
+    for (const auto& one : scenes) {
+      const double left = options_.budget - seconds_since(start_), share = left * one.weight / weights;
+      weights -= one.weight;
+      if (options_.budget > 0 && one.expected_seconds > share) {
+        report_.scenes_left_out.push_back(
+            fmt::format("{}: it would take some {:.2g} s to build, and {:.2g} s were left", one.name,
+                        one.expected_seconds, std::max(share, 0.0)));
+        continue;
+      }
+      if (!options_.quiet) print_message("bench: " + one.name);
+      SceneRun run{options_.scene, options_.threads, true, true};
+      run.describe = one.make;
+      const int status = measure(run, options_.budget > 0 ? share : 0, one.name);
+      if (status != kSuccess) return status;
+      if (options_.list) return status;
+    }
+    return kSuccess;
+  }
+
+  /// Prints what was measured.
+  int finish() {
+    if (options_.list) return kSuccess;
+    if (!options_.before.empty()) compare_with(report_, options_.before);
+    print_result(options_.json ? bench_json(report_) : bench_text(report_));
+    bool suspicious = false;
+    for (const BenchReport& scene : report_.scenes) {
+      suspicious |= scene.suspicious();
+      for (const BenchRow& row : scene.rows)
+        if (!row.repeatable)
+          throw Error(ErrorKind::failure, {}, row.name() + ": passes over the same rays gave different hits");
+    }
+    return suspicious ? kFallsShort : kSuccess;
+  }
+
+ private:
+  void list(const std::vector<std::string>& names) const {
+    const benchmarks::NameFilter filter(options_.filter);
+    std::string text;
+    for (const std::string& name : names)
+      if (filter.takes(name)) text += name + "\n";
+    print_result(text);
+  }
+
+  const BenchOptions& options_;
+  const Clock::time_point start_;
+  std::vector<benchmarks::FileRay> file_rays_;
+  benchmarks::BenchRunReport report_;
 };
-
-Json json_of(const Spread& spread) {
-  return {{"median", spread.median}, {"low", spread.low}, {"high", spread.high}, {"count", spread.count}};
-}
-
-std::string report_json(const Report& report) {
-  const Machine here = machine();
-  Json json;
-  json["raytree"] = version();
-  json["tracer"] = EmbreeIntersector::version();
-  json["machine"] = {{"processor", here.processor}, {"compiler", here.compiler}, {"build_type", here.build_type}};
-  json["scene"] = report.scene;
-  json["image"] = {{"width", report.width}, {"height", report.height}};
-  json["threads"] = report.threads;
-  json["build"] = {{"seconds", report.build_seconds},
-                   {"triangles", report.triangles},
-                   {"spheres", report.spheres},
-                   {"bytes", report.tracer_bytes},
-                   {"bytes_per_primitive", report.bytes_per_primitive()}};
-  json["rays"] = Json::array();
-  for (const IntersectionFigure& figure : report.figures)
-    json["rays"].push_back({{"kind", benchmarks::name_of(figure.kind)},
-                            {"rays", figure.rays},
-                            {"hits", figure.hits},
-                            {"checksum", fmt::format("{:016x}", figure.checksum)},
-                            {"repeatable", figure.repeatable},
-                            {"millions_per_second", json_of(figure.millions_per_second)},
-                            {"over_single_rays", json_of(figure.single_ratio)}});
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::string report_text(const Report& report) {
-  const Machine here = machine();
-  std::string text = fmt::format("scene    {}, {} x {} eye rays\n", report.scene, report.width, report.height);
-  text += fmt::format("tracer   {}, {} thread{}, {}\n", EmbreeIntersector::version(), report.threads,
-                      report.threads == 1 ? "" : "s", here.processor);
-  text += fmt::format("build    {:.3f} s, {} triangles, {} spheres, {:.1f} bytes each\n", report.build_seconds,
-                      grouped(report.triangles), grouped(report.spheres), report.bytes_per_primitive());
-  text += fmt::format("{:<10} {:>12} {:>12} {:>9} {:>17} {:>14}  {}\n", "rays", "traced", "hit", "Mrays/s", "quartiles",
-                      "/ single rays", "checksum");
-  for (const IntersectionFigure& figure : report.figures) {
-    const Spread& speed = figure.millions_per_second;
-    text += fmt::format("{:<10} {:>12} {:>12} {:>9.2f} {:>17} {:>14.2f}  {:016x}{}\n", benchmarks::name_of(figure.kind),
-                        grouped(figure.rays), grouped(figure.hits), speed.median,
-                        fmt::format("{:.2f}-{:.2f}", speed.low, speed.high), figure.single_ratio.median,
-                        figure.checksum, figure.repeatable ? "" : " NOT THE SAME EACH TIME");
-  }
-  return text;
-}
-
-Report measured(const BenchOptions& options, const Scene& scene, const Interruption& interruption) {
-  Report report;
-  report.scene = scene.description.name;
-  report.width = scene.description.image.width, report.height = scene.description.image.height;
-  report.threads = options.threads;
-  for (const ShapeSummary& shape : scene.summary.shapes)
-    report.triangles += shape.triangles, report.spheres += shape.spheres;
-  report.tracer_bytes = scene.intersector->memory_bytes();
-  report.build_seconds = scene.seconds.build;
-  const auto rays = benchmarks::benchmark_rays(scene, &interruption.stop());
-  report.figures =
-      benchmarks::measure_intersection(scene, rays, options.threads, options.repetitions, &interruption.stop());
-  return report;
-}
 
 }  // namespace
 
 int bench_command(const Words& words) {
   const std::optional<BenchOptions> options = parse_bench_options(words);
   if (!options) return kSuccess;
-  return with_prepared_scene({options->scene, options->threads, true, options->quiet},
-                             [&](const Scene& scene, const Interruption& interruption) {
-                               const Report report = measured(*options, scene, interruption);
-                               if (interruption.stop()) return;
-                               print_result(options->json ? report_json(report) : report_text(report));
-                               for (const IntersectionFigure& figure : report.figures)
-                                 if (!figure.repeatable)
-                                   throw Error(ErrorKind::failure, {}, "passes over the same rays gave different hits");
-                             });
+  Bench bench(*options);
+  const int status = options->standard() ? bench.measure_standard()
+                                         : bench.measure({options->scene, options->threads, true, options->quiet},
+                                                         options->budget, std::string());
+  return status != kSuccess ? status : bench.finish();
 }
 
 }  // namespace raytree::app

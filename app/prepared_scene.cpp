@@ -15,7 +15,7 @@ int with_prepared_scene(const SceneRun& run, const std::function<void(Scene&, co
   try {
     arena.execute([&] {
       Warnings warnings;
-      SceneDescription description = load_scene(run.scene, warnings);
+      SceneDescription description = run.describe ? run.describe(warnings) : load_scene(run.scene, warnings);
       PrepareOptions options;
       options.camera = run.scene.camera;
       options.threads = run.threads;

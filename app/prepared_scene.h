@@ -16,6 +16,8 @@ struct SceneRun {
   bool quiet = false;  ///< no warnings
   bool measure_tessellation = false;
   bool keep_sources = false;  ///< see PrepareOptions
+  /// Makes the scene; no function: it is loaded as `scene` says.
+  std::function<SceneDescription(Warnings&)> describe = {};
 };
 
 /// Loads and prepares the scene and hands it to `use`, all on that many threads. Returns the exit status: success, or

@@ -23,11 +23,6 @@ constexpr float kGlassIndex = 1.5f;
 
 bool stopped(const std::atomic<bool>* stop) { return stop != nullptr && stop->load(std::memory_order_relaxed); }
 
-void add_ray(RaySet& set, const Vec3f& origin, const Vec3f& direction, float end) {
-  if (set.batches.empty() || set.batches.back().size == kBenchmarkBatch) set.batches.emplace_back(kBenchmarkBatch);
-  set.batches.back().push(origin, direction, end);
-}
-
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
@@ -44,7 +39,33 @@ Vec3f bounced(const Vec3f& normal, std::uint64_t key) {
   return sum.dot(sum) > 1e-6f ? unit(sum) : normal;
 }
 
-/// A batch's rays where a render has them when it asks: in the nearest caches, not in main memory.
+/// Folds one answer into a checksum.
+std::uint64_t folded(std::uint64_t sum, std::uint64_t word) { return (std::rotl(sum, 5) ^ word) * 0x9e3779b97f4a7c15u; }
+
+void look_at_hits(const RayBatch& batch, const HitBatch& hits, PassResult& result) {
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    if (hits.geometry[i] == kNoGeometry) continue;
+    ++result.hits;
+    const std::uint64_t surface = (std::uint64_t(hits.geometry[i]) << 32) | hits.primitive[i];
+    const std::uint64_t distance = std::bit_cast<std::uint32_t>(hits.distance[i]);
+    result.checksum = folded(folded(result.checksum, surface), (distance << 32) | i);
+  }
+}
+
+void look_at_occlusion(const RayBatch& batch, const std::uint8_t* occluded, PassResult& result) {
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    result.hits += occluded[i];
+    result.checksum = folded(result.checksum, occluded[i]);
+  }
+}
+
+}  // namespace
+
+void add_ray(RaySet& set, const Vec3f& origin, const Vec3f& direction, float end) {
+  if (set.batches.empty() || set.batches.back().size == kBenchmarkBatch) set.batches.emplace_back(kBenchmarkBatch);
+  set.batches.back().push(origin, direction, end);
+}
+
 const RayBatch& warmed(const RayBatch& batch) {
   thread_local RayBatch copy(kBenchmarkBatch);
   copy.size = batch.size;
@@ -59,38 +80,15 @@ const RayBatch& warmed(const RayBatch& batch) {
   return copy;
 }
 
-/// Runs `ask(batch)` under the clock and then `look(batch, result)` outside it for every batch, on `threads` threads,
-/// and adds up in the order of the batches.
-template <class Ask, class Look>
-PassResult pass(const RaySet& rays, int threads, const Ask& ask, const Look& look) {
-  std::vector<PassResult> results(rays.batches.size());
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.batches.size(), 4),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        const FlushDenormals flush;
-                        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                          const RayBatch& batch = warmed(rays.batches[i]);
-                          const auto start = Clock::now();
-                          ask(batch);
-                          results[i].seconds = seconds_since(start);
-                          look(batch, results[i]);
-                        }
-                      });
-  });
-  PassResult sum;
-  for (const PassResult& result : results) {
-    sum.seconds += result.seconds / threads;
-    sum.hits += result.hits;
-    sum.checksum = mixed(sum.checksum ^ result.checksum);
-  }
-  return sum;
+RaySet thinned(RaySet rays, std::size_t most) {
+  const std::size_t count = rays.batches.size();
+  if (count <= most) return rays;
+  std::vector<RayBatch> kept;
+  for (std::size_t i = 0; i < std::max<std::size_t>(most, 1); ++i)
+    kept.push_back(std::move(rays.batches[i * count / std::max<std::size_t>(most, 1)]));
+  rays.batches = std::move(kept);
+  return rays;
 }
-
-/// Folds one answer into a checksum.
-std::uint64_t folded(std::uint64_t sum, std::uint64_t word) { return (std::rotl(sum, 5) ^ word) * 0x9e3779b97f4a7c15u; }
-
-}  // namespace
 
 const char* name_of(BenchmarkRays rays) {
   constexpr const char* kNames[kBenchmarkRaysCount] = {"primary", "shadow", "mirror", "refracted", "bounce"};
@@ -102,7 +100,8 @@ std::size_t RaySet::size() const {
                          [](std::size_t sum, const RayBatch& batch) { return sum + batch.size; });
 }
 
-std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const std::atomic<bool>* stop) {
+std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const std::atomic<bool>* stop,
+                                                       std::size_t most_batches) {
   std::array<RaySet, kBenchmarkRaysCount> sets;
   const auto set = [&](BenchmarkRays kind) -> RaySet& { return sets[static_cast<std::size_t>(kind)]; };
   set(BenchmarkRays::shadow).occlusion = true;
@@ -111,14 +110,24 @@ std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const
 
   RaySet& primary = set(BenchmarkRays::primary);
   const auto [width, height] = scene.description.image;
-  for (int block_y = 0; block_y < height && !stopped(stop); block_y += kBlockHeight)
-    for (int block_x = 0; block_x < width; block_x += kBlockWidth)
-      for (int y = block_y; y < std::min(block_y + kBlockHeight, height); ++y)
-        for (int x = block_x; x < std::min(block_x + kBlockWidth, width); ++x) {
+  // A batch is a run of blocks along rows of blocks; the picture's batches are left out evenly.
+  const std::size_t blocks_across = static_cast<std::size_t>((width + kBlockWidth - 1) / kBlockWidth),
+                    blocks = blocks_across * static_cast<std::size_t>((height + kBlockHeight - 1) / kBlockHeight);
+  constexpr std::size_t kBlocksOfBatch = kBenchmarkBatch / (kBlockWidth * kBlockHeight);
+  const std::size_t runs = (blocks + kBlocksOfBatch - 1) / kBlocksOfBatch, taken = std::min(runs, most_batches);
+  for (std::size_t take = 0; take < taken && !stopped(stop); ++take) {
+    const std::size_t first = take * runs / taken * kBlocksOfBatch;
+    for (std::size_t block = first; block < std::min(first + kBlocksOfBatch, blocks); ++block) {
+      const int left = static_cast<int>(block % blocks_across) * kBlockWidth,
+                top = static_cast<int>(block / blocks_across) * kBlockHeight;
+      for (int y = top; y < std::min(top + kBlockHeight, height); ++y)
+        for (int x = left; x < std::min(left + kBlockWidth, width); ++x) {
           Vec3f origin, direction;
           scene.camera.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, origin, direction);
           add_ray(primary, origin, direction, kForever);
         }
+    }
+  }
 
   // Shadow rays toward one light stand together, as the renderer queues them.
   std::vector<RaySet> toward_light(scene.lights.size());
@@ -150,31 +159,6 @@ std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const
   return sets;
 }
 
-namespace {
-
-thread_local HitBatch hits_of_batch(kBenchmarkBatch);
-thread_local std::vector<std::uint8_t> occluded_of_batch(kBenchmarkBatch + kBatchPadding);
-
-void look_at_hits(const RayBatch& batch, PassResult& result) {
-  const HitBatch& hits = hits_of_batch;
-  for (std::size_t i = 0; i < batch.size; ++i) {
-    if (hits.geometry[i] == kNoGeometry) continue;
-    ++result.hits;
-    const std::uint64_t surface = (std::uint64_t(hits.geometry[i]) << 32) | hits.primitive[i];
-    const std::uint64_t distance = std::bit_cast<std::uint32_t>(hits.distance[i]);
-    result.checksum = folded(folded(result.checksum, surface), (distance << 32) | i);
-  }
-}
-
-void look_at_occlusion(const RayBatch& batch, PassResult& result) {
-  for (std::size_t i = 0; i < batch.size; ++i) {
-    result.hits += occluded_of_batch[i];
-    result.checksum = folded(result.checksum, occluded_of_batch[i]);
-  }
-}
-
-}  // namespace
-
 RayRecord record_of(const RaySet& rays) {
   const bool coherent = rays.coherence == Coherence::coherent;
   const RayClass ray_class = rays.occlusion ? (coherent ? RayClass::coherent_occlusion : RayClass::incoherent_occlusion)
@@ -197,66 +181,39 @@ ReplayCalls calls_of(const EmbreeIntersector& embree) {
   return calls;
 }
 
-PassResult batched_pass(const Scene& scene, const RaySet& rays, int threads) {
-  const RayIntersector& tracer = *scene.intersector;
-  if (rays.occlusion)
-    return pass(
-        rays, threads, [&](const RayBatch& batch) { tracer.occluded(batch, rays.coherence, occluded_of_batch.data()); },
-        look_at_occlusion);
-  return pass(
-      rays, threads, [&](const RayBatch& batch) { tracer.intersect(batch, rays.coherence, hits_of_batch); },
-      look_at_hits);
-}
-
-PassResult single_ray_pass(const Scene& scene, const RaySet& rays, int threads) {
-  const EmbreeIntersector& tracer = embree_of(scene);
-  if (rays.occlusion)
-    return pass(
-        rays, threads,
-        [&](const RayBatch& batch) {
-          for (std::size_t i = 0; i < batch.size; ++i)
-            occluded_of_batch[i] = tracer.occluded_one(batch.origin(i), batch.direction(i), batch.max_distance[i]);
-        },
-        look_at_occlusion);
-  return pass(
-      rays, threads,
-      [&](const RayBatch& batch) {
-        for (std::size_t i = 0; i < batch.size; ++i)
-          hits_of_batch.set(i, tracer.intersect_one(batch.origin(i), batch.direction(i), batch.max_distance[i]));
-      },
-      look_at_hits);
-}
-
-std::vector<IntersectionFigure> measure_intersection(const Scene& scene,
-                                                     const std::array<RaySet, kBenchmarkRaysCount>& rays, int threads,
-                                                     int repetitions, const std::atomic<bool>* stop) {
-  struct Samples {
-    std::vector<double> speed, ratio;
-  };
-  std::array<Samples, kBenchmarkRaysCount> samples;
-  std::vector<IntersectionFigure> figures;
-  for (std::size_t k = 0; k < kBenchmarkRaysCount; ++k)
-    if (rays[k].size() > 0)
-      figures.emplace_back().kind = static_cast<BenchmarkRays>(k), figures.back().rays = rays[k].size();
-  for (int repetition = 0; repetition <= repetitions && !stopped(stop); ++repetition)
-    for (IntersectionFigure& figure : figures) {
-      const auto kind = static_cast<std::size_t>(figure.kind);
-      const PassResult batched = batched_pass(scene, rays[kind], threads);
-      const PassResult single = single_ray_pass(scene, rays[kind], threads);
-      if (repetition == 0) {
-        figure.hits = batched.hits, figure.checksum = batched.checksum;
-        continue;
-      }
-      figure.repeatable &= batched.hits == figure.hits && batched.checksum == figure.checksum;
-      samples[kind].speed.push_back(static_cast<double>(figure.rays) / batched.seconds * 1e-6);
-      samples[kind].ratio.push_back(single.seconds / batched.seconds);
-    }
-  for (IntersectionFigure& figure : figures) {
-    Samples& of_kind = samples[static_cast<std::size_t>(figure.kind)];
-    figure.millions_per_second = spread_of(std::move(of_kind.speed));
-    figure.single_ratio = spread_of(std::move(of_kind.ratio));
+PassResult timed_pass(const RaySet& rays, int threads, const AskBatch& ask, const LookAtBatch& look) {
+  std::vector<PassResult> results(rays.batches.size());
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.batches.size(), 1),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        thread_local HitBatch hits(kBenchmarkBatch);
+                        thread_local std::vector<std::uint8_t> occluded(kBenchmarkBatch + kBatchPadding);
+                        const FlushDenormals flush;
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                          results[i].seconds = ask(i, hits, occluded.data());
+                          if (rays.occlusion)
+                            look_at_occlusion(rays.batches[i], occluded.data(), results[i]);
+                          else
+                            look_at_hits(rays.batches[i], hits, results[i]);
+                          if (look) look(i, hits, occluded.data());
+                        }
+                      });
+  });
+  // In the order of the batches, whatever the threads.
+  PassResult sum;
+  for (const PassResult& result : results) {
+    sum.seconds += result.seconds / threads;
+    sum.hits += result.hits;
+    sum.checksum = mixed(sum.checksum ^ result.checksum);
   }
-  return figures;
+  return sum;
+}
+
+PassResult batched_pass(const Scene& scene, const RaySet& rays, int threads) {
+  return timed_pass(rays, threads, [&](std::size_t batch, HitBatch& hits, std::uint8_t* occluded) {
+    return ask_tracer<WallTime>(*scene.intersector, rays, batch, hits, occluded);
+  });
 }
 
 }  // namespace raytree::benchmarks

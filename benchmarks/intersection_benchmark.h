@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "geometry/embree_replay.h"
 #include "geometry/ray_batch.h"
 #include "geometry/ray_intersector.h"
+#include "geometry/stopwatch.h"
 #include "renderer/scene.h"
 
 namespace raytree::benchmarks {
@@ -37,8 +39,16 @@ struct RaySet {
 };
 inline constexpr std::size_t kBenchmarkBatch = 1024;
 
-/// The rays of a prepared scene, one set a kind; a set may be empty. `stop`: ends early, with sets that are not whole.
-std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const std::atomic<bool>* stop = nullptr);
+/// Adds a ray to a set's last batch, or to a new one.
+void add_ray(RaySet& set, const Vec3f& origin, const Vec3f& direction, float end);
+
+/// Batches spread evenly over the set, no more than `most` (at least one).
+RaySet thinned(RaySet rays, std::size_t most);
+
+/// The rays of a prepared scene, one set a kind; a set may be empty. Eye rays are those of the whole picture, or no
+/// more than `most_batches` batches spread evenly over it. `stop`: ends early, with sets that are not whole.
+std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const std::atomic<bool>* stop = nullptr,
+                                                       std::size_t most_batches = std::size_t(-1));
 
 /// What one pass over a set found.
 struct PassResult {
@@ -47,24 +57,31 @@ struct PassResult {
   std::uint64_t checksum = 0;  ///< of every answer in the order of the rays, whatever the threads
 };
 
-/// Asks all of a set's rays on `threads` threads: batches through the seam, or one ray a call.
+/// Asks all of a set's rays through the seam on `threads` threads, batch by batch.
 PassResult batched_pass(const Scene& scene, const RaySet& rays, int threads);
-PassResult single_ray_pass(const Scene& scene, const RaySet& rays, int threads);
 
-struct IntersectionFigure {
-  BenchmarkRays kind = BenchmarkRays::primary;
-  std::size_t rays = 0;
-  std::uint64_t hits = 0, checksum = 0;
-  bool repeatable = true;      ///< all passes gave the same checksum
-  Spread millions_per_second;  ///< batched
-  Spread single_ratio;         ///< batched speed over that of single rays, pair by pair
-};
+/// One pass over batches [0, count) on `threads` threads: `ask(i, hits, occluded)` answers batch i and returns the
+/// seconds that count; look(i, hits, occluded), if there is one, is shown the answers.
+using AskBatch = std::function<double(std::size_t batch, HitBatch& hits, std::uint8_t* occluded)>;
+using LookAtBatch = std::function<void(std::size_t batch, const HitBatch& hits, const std::uint8_t* occluded)>;
+PassResult timed_pass(const RaySet& rays, int threads, const AskBatch& ask, const LookAtBatch& look = {});
 
-/// Repetitions of all kinds, batched and single, interleaved so that a machine's moods meet all alike; one more comes
-/// first and does not count. Kinds without rays are left out.
-std::vector<IntersectionFigure> measure_intersection(const Scene& scene,
-                                                     const std::array<RaySet, kBenchmarkRaysCount>& rays, int threads,
-                                                     int repetitions, const std::atomic<bool>* stop = nullptr);
+/// A copy of a batch that the calling thread has just written: rays where a render has them when it asks, in the
+/// nearest caches, not in main memory. Holds until the next call.
+const RayBatch& warmed(const RayBatch& batch);
+
+/// Asks a tracer behind the seam about one batch; returns the seconds by a Stopwatch of stopwatch.h.
+template <class Stopwatch>
+double ask_tracer(const RayIntersector& tracer, const RaySet& rays, std::size_t batch, HitBatch& hits,
+                  std::uint8_t* occluded) {
+  const RayBatch& warm = warmed(rays.batches[batch]);
+  const Stopwatch time;
+  if (rays.occlusion)
+    tracer.occluded(warm, rays.coherence, occluded);
+  else
+    tracer.intersect(warm, rays.coherence, hits);
+  return time.seconds();
+}
 
 /// The rays as a record that can be replayed.
 RayRecord record_of(const RaySet& rays);

@@ -47,9 +47,13 @@ class Query {
   void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) {
     rtcIntersect8(valid, scene, &rays, &intersect_);
   }
+  void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+    rtcIntersect16(valid, scene, &rays, &intersect_);
+  }
   void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, &occluded_); }
   void occluded(RTCScene scene, const int* valid, RTCRay4& rays) { rtcOccluded4(valid, scene, &rays, &occluded_); }
   void occluded(RTCScene scene, const int* valid, RTCRay8& rays) { rtcOccluded8(valid, scene, &rays, &occluded_); }
+  void occluded(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &rays, &occluded_); }
 
  private:
   RTCIntersectArguments intersect_;
@@ -70,9 +74,13 @@ class Query {
   void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context_, &ray); }
   void intersect(RTCScene scene, const int* valid, RTCRayHit4& rays) { rtcIntersect4(valid, scene, &context_, &rays); }
   void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) { rtcIntersect8(valid, scene, &context_, &rays); }
+  void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+    rtcIntersect16(valid, scene, &context_, &rays);
+  }
   void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &context_, &ray); }
   void occluded(RTCScene scene, const int* valid, RTCRay4& rays) { rtcOccluded4(valid, scene, &context_, &rays); }
   void occluded(RTCScene scene, const int* valid, RTCRay8& rays) { rtcOccluded8(valid, scene, &context_, &rays); }
+  void occluded(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &context_, &rays); }
 
  private:
   RTCIntersectContext context_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "geometry/embree_cones.h"
@@ -23,9 +22,12 @@ using embree::traceable;
 /// faster; rays in random directions lose half their speed when followed together.
 constexpr float kAlikeCosine = 0.5f;
 
+/// As one vector: in two halves, as memcpy() may write them, they would not be there yet for who reads all of a
+/// packet's lanes at once, and wait for the cache.
 template <int Width>
 void copy_lanes(void* to, const void* from) {
-  std::memcpy(to, from, Width * 4);
+  typedef float Lanes __attribute__((vector_size(Width * 4), aligned(4), may_alias));
+  *static_cast<Lanes*>(to) = *static_cast<const Lanes*>(from);
 }
 
 /// The fields of a packet that Embree only reads and that are alike for all rays.
@@ -161,7 +163,7 @@ RTCBuildQuality embree_quality(EmbreeOptions::Quality quality) {
 
 /// A scene of these shapes, not committed. Embree writes to none of the buffers that it shares.
 embree::SceneHandle scene_of(RTCDevice device, const BoundedShapes& shapes, const EmbreeOptions& options,
-                             const FewShapes& left_out) {
+                             const FewShapes& left_out, const embree::SceneParts& parts) {
   embree::SceneHandle handle(rtcNewScene(device));
   RTCScene scene = handle.get();
   int flags = RTC_SCENE_FLAG_NONE;
@@ -199,7 +201,11 @@ embree::SceneHandle scene_of(RTCDevice device, const BoundedShapes& shapes, cons
   for (std::size_t i = 0; i < shapes.meshes.size(); ++i) {
     const TriangleMesh& mesh = shapes.meshes[i].mesh;
     if (mesh.corners.empty()) continue;
-    attach(RTC_GEOMETRY_TYPE_TRIANGLE, kFirstMeshGeometry + static_cast<GeometryId>(i), [&](RTCGeometry geometry) {
+    attach(parts.mesh_type, kFirstMeshGeometry + static_cast<GeometryId>(i), [&](RTCGeometry geometry) {
+      if (parts.set_mesh) {
+        parts.set_mesh(geometry, mesh);
+        return;
+      }
       share(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions, sizeof(Vec3f), mesh.positions.size());
       share(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.corners, 12, mesh.triangle_count());
     });
@@ -240,6 +246,10 @@ void EmbreeIntersector::throw_if_failed(State& state, const std::atomic<bool>* s
 }
 
 EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions& options)
+    : EmbreeIntersector(shapes, options, embree::SceneParts()) {}
+
+EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions& options,
+                                     const embree::SceneParts& parts)
     : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.shapes = &shapes;
@@ -276,12 +286,12 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
   state.groups.resize(shapes.groups.size());
   for (std::size_t i = 0; i < shapes.groups.size(); ++i) {
     if (!used[i]) continue;
-    state.groups[i] = scene_of(device, shapes.groups[i], options, FewShapes());
+    state.groups[i] = scene_of(device, shapes.groups[i], options, FewShapes(), parts);
     commit(state.groups[i].get(), options.stop);
     throw_if_failed(state, options.stop);
   }
 
-  state.scene = scene_of(device, shapes, options, state.few);
+  state.scene = scene_of(device, shapes, options, state.few, parts);
   state.instanced = !shapes.instances.empty();
   state.together = shapes.instances.size() < options.many_instances;
   state.first_instance = kFirstMeshGeometry + static_cast<GeometryId>(shapes.meshes.size());
@@ -295,6 +305,8 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(state.scene.get(), geometry.get(), state.first_instance + static_cast<GeometryId>(i));
   }
+  if (parts.add)
+    parts.add(device, state.scene.get(), state.first_instance + static_cast<GeometryId>(shapes.instances.size()));
   commit(state.scene.get(), options.stop);
   throw_if_failed(state, options.stop);
   state.bounds = bounds_of(state.scene.get());

@@ -12,6 +12,10 @@
 
 namespace raytree {
 
+namespace embree {
+struct SceneParts;  // embree_state.h
+}
+
 /// Instances from which packets without Embree's coherent flag are the fastest call for every class of rays (`./run
 /// measure instances` compares).
 inline constexpr std::size_t kManyInstances = 100;
@@ -55,7 +59,9 @@ class EmbreeIntersector final : public RayIntersector {
 
  private:
   friend class BareReplay;
+  friend class EmbreeBenchScene;
   struct State;
+  EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions& options, const embree::SceneParts& parts);
   static void throw_if_failed(State& state, const std::atomic<bool>* stop);
   void nearest_bounded(const RayBatch& rays, Coherence coherence, const float* max_distance,
                        HitBatch& hits) const noexcept;

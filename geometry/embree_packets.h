@@ -9,9 +9,14 @@
 
 namespace raytree::embree {
 
-/// Embree's types of a packet of 4 or 8 rays.
+/// Embree's types of a packet of 4, 8 or 16 rays.
 template <int Width>
 struct PacketTypes;
+template <>
+struct PacketTypes<16> {
+  using RayHit = RTCRayHit16;
+  using Ray = RTCRay16;
+};
 template <>
 struct PacketTypes<8> {
   using RayHit = RTCRayHit8;
@@ -28,6 +33,15 @@ struct PacketTypes<4> {
 inline bool traceable(const Vec3f& origin, const Vec3f& direction, float max_distance) {
   return std::isfinite(origin.x + origin.y + origin.z) && std::isfinite(direction.x + direction.y + direction.z) &&
          direction != Vec3f(0, 0, 0) && max_distance >= 0;
+}
+
+/// Lane i of a packet: a ray that starts at its origin.
+template <class Lanes>
+void set_lane(Lanes& lanes, int i, const Vec3f& origin, const Vec3f& direction, float max_distance) {
+  lanes.org_x[i] = origin.x, lanes.org_y[i] = origin.y, lanes.org_z[i] = origin.z;
+  lanes.dir_x[i] = direction.x, lanes.dir_y[i] = direction.y, lanes.dir_z[i] = direction.z;
+  lanes.tnear[i] = 0, lanes.tfar[i] = max_distance, lanes.time[i] = 0;
+  lanes.mask[i] = 0xffffffffu, lanes.id[i] = 0, lanes.flags[i] = 0;
 }
 
 inline RTCRay single_ray(const Vec3f& origin, const Vec3f& direction, float max_distance) {

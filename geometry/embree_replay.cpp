@@ -23,14 +23,6 @@ constexpr std::size_t kReplayBlock = 256;
 /// Rays that make a chunk: a few tiles' work.
 constexpr std::size_t kChunk = 16384;
 
-template <class Lanes>
-void set_lane(Lanes& lanes, int i, const Ray& ray) {
-  lanes.org_x[i] = ray.origin.x, lanes.org_y[i] = ray.origin.y, lanes.org_z[i] = ray.origin.z;
-  lanes.dir_x[i] = ray.direction.x, lanes.dir_y[i] = ray.direction.y, lanes.dir_z[i] = ray.direction.z;
-  lanes.tnear[i] = 0, lanes.tfar[i] = ray.max_distance, lanes.time[i] = 0;
-  lanes.mask[i] = 0xffffffffu, lanes.id[i] = 0, lanes.flags[i] = 0;
-}
-
 /// Room for one block's packets of any kind.
 template <int Width>
 struct Workspace {
@@ -63,7 +55,7 @@ class Replayer {
       return seconds;
     }
     const std::size_t packets = fill(rays, size, [&](std::size_t packet, int lane, const Ray& ray) {
-      set_lane(work_.ray_hits[packet].ray, lane, ray);
+      embree::set_lane(work_.ray_hits[packet].ray, lane, ray.origin, ray.direction, ray.max_distance);
       embree::clear_hit(work_.ray_hits[packet].hit, lane);
     });
     const auto start = Clock::now();
@@ -88,8 +80,9 @@ class Replayer {
       for (std::size_t i = 0; i < size; ++i) hits += work_.single_rays[i].tfar < 0 || stopped(i);
       return seconds;
     }
-    const std::size_t packets = fill(
-        rays, size, [&](std::size_t packet, int lane, const Ray& ray) { set_lane(work_.rays[packet], lane, ray); });
+    const std::size_t packets = fill(rays, size, [&](std::size_t packet, int lane, const Ray& ray) {
+      embree::set_lane(work_.rays[packet], lane, ray.origin, ray.direction, ray.max_distance);
+    });
     const auto start = Clock::now();
     for (std::size_t p = 0; p < packets; ++p) query.occluded(scene_, work_.valid[p], work_.rays[p]);
     seconds = seconds_since(start);

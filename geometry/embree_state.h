@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -22,6 +23,15 @@ struct SceneBounds {
   bool hold(float x, float y, float z) const {
     return (x >= least[0]) & (x <= most[0]) & (y >= least[1]) & (y <= most[1]) & (z >= least[2]) & (z <= most[2]);
   }
+};
+
+/// What goes into a scene otherwise than the renderer has it; for benchmarks.
+struct SceneParts {
+  /// Kind of geometry that meshes become, and what sets a mesh's buffers; no function: triangles that share its arrays.
+  RTCGeometryType mesh_type = RTC_GEOMETRY_TYPE_TRIANGLE;
+  std::function<void(RTCGeometry, const TriangleMesh&)> set_mesh;
+  /// Attaches more to the top scene, with ids from the given one on.
+  std::function<void(RTCDevice, RTCScene, GeometryId)> add;
 };
 
 }  // namespace embree

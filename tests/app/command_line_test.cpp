@@ -1,4 +1,4 @@
-// The program from outside: help, wrong input, lists, info, bench, and the documentation that names each flag.
+// The program from outside: help, wrong input, lists, info, and the documentation that names each flag.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -286,33 +286,6 @@ TEST(CommandLineInfo, CountsInstancesOnceAndAsOftenAsTheyAreUsed) {
   EXPECT_EQ(info["objects"][0]["instances"], 2);
   EXPECT_EQ(info["objects"][0]["first_extra_id"], 3);
   EXPECT_EQ(info["groups"].size(), 2u);
-}
-
-TEST(CommandLineBench, CountsTheSameAnswersForAnyNumberOfThreads) {
-  const auto run = [](const char* threads) {
-    const ProgramResult result = run_program(
-        {"bench", kScene, "--size", "64x48", "--repetitions", "2", "--threads", threads, "--json", "--quiet"});
-    EXPECT_EQ(result.status, 0) << result.err;
-    return Json::parse(result.out);
-  };
-  const Json one = run("1"), three = run("3");
-  ASSERT_EQ(one["rays"].size(), 5u);
-  for (std::size_t kind = 0; kind < 5; ++kind) {
-    const Json &a = one["rays"][kind], &b = three["rays"][kind];
-    EXPECT_GT(a["rays"], 0) << a;
-    for (const char* key : {"kind", "rays", "hits", "checksum"}) EXPECT_EQ(a[key], b[key]) << a << b;
-    EXPECT_EQ(a["millions_per_second"]["count"], 2);
-    EXPECT_GT(a["over_single_rays"]["median"], 0);
-    EXPECT_EQ(a["repeatable"], true);
-  }
-  EXPECT_EQ(one["rays"][0]["rays"], 64 * 48);
-  EXPECT_GT(one["build"]["bytes"], 0);
-
-  const ProgramResult text = run_program({"bench", kScene, "--size", "64x48", "--repetitions", "1"});
-  ASSERT_EQ(text.status, 0) << text.err;
-  for (const char* part : {"primary", "shadow", "mirror", "refracted", "bounce", "Mrays/s", "build"})
-    EXPECT_TRUE(contains(text.out, part)) << part << "\n" << text.out;
-  expect_bad_input({"bench", kScene, "--repetitions", "0"}, {"--repetitions", "0 is not within 1 and 10000"});
 }
 
 }  // namespace

@@ -1,0 +1,67 @@
+// A scene of Embree's alone that can be built in every way that benchmarks compare, and asked by every call: packets
+// are filled and read outside the clock. Everything that bounds hold is Embree's here; planes are not in it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "geometry/embree_intersector.h"
+#include "geometry/ray_batch.h"
+
+namespace raytree {
+
+/// What the triangles of meshes are handed over as.
+enum class BenchGeometry : std::uint8_t { triangles, quads, grids };
+inline constexpr std::size_t kBenchGeometryCount = 3;
+
+/// A shape of another type that stands beside the meshes, too small to be met by more than a stray ray: what its
+/// hierarchy costs all others.
+enum class BenchCompany : std::uint8_t { none, quad, quad_and_sphere };
+
+struct BenchSceneOptions {
+  BenchGeometry geometry = BenchGeometry::triangles;
+  BenchCompany company = BenchCompany::none;
+  bool robust = true, compact = false;
+  EmbreeOptions::Quality quality = EmbreeOptions::Quality::medium;
+  int threads = 0;                          ///< of the build; 0: all of the arena
+  const std::atomic<bool>* stop = nullptr;  ///< ends the build early
+};
+
+/// rtcIntersect1, 4, 8 or 16, with Embree's coherent flag or without.
+struct BenchCall {
+  int width = 1;
+  bool coherent = false;
+};
+
+class EmbreeBenchScene {
+ public:
+  /// Over shapes, which must outlive it. Throws Error as EmbreeIntersector does.
+  EmbreeBenchScene(const ShapeSet& shapes, const BenchSceneOptions& options);
+  ~EmbreeBenchScene();
+
+  /// Embree's own time: what prepares quads and grids is not in it.
+  double build_seconds() const noexcept { return build_seconds_; }
+  std::size_t memory_bytes() const noexcept;       ///< Embree's own, less the arrays that it shares
+  std::size_t peak_memory_bytes() const noexcept;  ///< while it was built
+  /// Triangles a primitive handed over, in the mean; 1 for triangles, 2 at most for quads, 128 for grids.
+  double triangles_per_primitive() const noexcept { return triangles_per_primitive_; }
+
+  /// Whether Embree has calls of that width of its own on this processor.
+  bool has_native(int width) const noexcept;
+
+  /// The batch's nearest hits, in Embree's own numbers of geometry and primitive; returns the seconds that
+  /// the thread ran inside the calls.
+  /// Rays that no Embree may have (not finite, no direction) miss.
+  double intersect(const RayBatch& rays, BenchCall call, HitBatch& hits) const noexcept;
+  /// 1 for rays that something stops, else 0.
+  double occluded(const RayBatch& rays, BenchCall call, std::uint8_t* occluded) const noexcept;
+
+ private:
+  struct Parts;
+  std::unique_ptr<const Parts> parts_;  ///< arrays that Embree shares: before the tracer, so that they outlive it
+  std::unique_ptr<const EmbreeIntersector> tracer_;
+  double build_seconds_ = 0, triangles_per_primitive_ = 1;
+};
+
+}  // namespace raytree

@@ -1,0 +1,44 @@
+// Triangles joined again: pairs into quads, quads into grids: the forms that Embree also takes, for benchmarks that
+// compare them. Quads are the same surface to the last triangle.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/buffer.h"
+#include "geometry/vec.h"
+
+namespace raytree {
+
+struct QuadList {
+  /// [quad][4]: the quad's triangles are its corners (0, 1, 3) and (2, 3, 1), as Embree halves a quad. A triangle that
+  /// found no partner has corners 2 and 3 alike.
+  Buffer<std::uint32_t> corners;
+  std::size_t paired = 0;  ///< quads of two triangles
+
+  std::size_t size() const { return corners.size() / 4; }
+};
+
+/// Pairs each triangle with the first of the few behind it that shares an edge with it, wound alike. corners:
+/// [triangle][3].
+QuadList joined_quads(std::span<const std::uint32_t> corners);
+
+inline constexpr std::uint32_t kMostGridQuads = 8;  ///< along a side of a grid
+
+/// `width` x `height` points, row by row, neighbors four by four a quad in the order (0, 0), (1, 0), (1, 1), (0, 1).
+struct GridTile {
+  std::uint32_t first_point = 0, width = 0, height = 0;
+};
+struct GridList {
+  Buffer<Vec3f> points;  ///< each grid's own
+  std::vector<GridTile> tiles;
+  std::size_t quads = 0;
+};
+
+/// Joins quads across edges that two of them share into grids of up to kMostGridQuads x kMostGridQuads. Every quad goes
+/// into one; those without fitting neighbors are grids of their own. Where quads are halved along one diagonal or the
+/// other, as suits each, grids are not: Embree halves all of a grid alike, and the surface differs by as much.
+GridList joined_grids(const QuadList& quads, std::span<const Vec3f> positions);
+
+}  // namespace raytree
