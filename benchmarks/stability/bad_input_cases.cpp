@@ -1,0 +1,251 @@
+// What is no triangle and no ray: vertices that are not finite, triangles without area, rays in a triangle's plane,
+// rays without a direction.
+#include <cmath>
+#include <limits>
+
+#include "benchmarks/ray_comparison.h"
+#include "benchmarks/stability/intersection_cases.h"
+#include "benchmarks/stability/ray_probes.h"
+#include "geometry/embree_intersector.h"
+#include "geometry/mesh_checks.h"
+#include "geometry/triangle_reference.h"
+
+namespace raytree::benchmarks {
+namespace {
+
+constexpr float kPoison = std::numeric_limits<float>::quiet_NaN();
+
+bool is_finite_vector(const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// Hits of rays at the ball from outside whose surface is not finite, or whose normal is not a unit one.
+std::size_t not_finite_surfaces(const StabilityRun& run, const ShapeSet& shapes, ProbeRandom& random) {
+  const EmbreeIntersector tracer(shapes, run.tracer_options());
+  std::vector<ProbeRay> rays;
+  for (std::size_t i = 0; i < probe_count(run, 10000, 4000); ++i)
+    rays.push_back(ray_to(random.direction() * 3.0, random.direction() * random.uniform(0, 1)));
+  std::size_t bad = 0;
+  const auto hits = hits_of(tracer, rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].geometry == kNoGeometry) continue;
+    const SurfacePoint point = surface_at(shapes, rays[i].origin, rays[i].direction, hits[i], false);
+    bad += !is_finite_vector(point.position) || !std::isfinite(point.clearance) ||
+           !(std::abs(point.geometric_normal.length() - 1) < 1e-6f);
+  }
+  return bad;
+}
+
+/// As a mesh that was read, settled: what cannot be drawn is dropped. Returns the faces that the warnings count.
+std::int64_t settled_drops(PolygonMesh& mesh) {
+  Warnings warnings;
+  const MeshLocator nowhere{[](std::size_t) { return SourceLocation(); }, [](std::size_t) { return SourceLocation(); }};
+  settle_mesh(mesh, "mesh", nowhere, warnings);
+  std::int64_t dropped = 0;
+  for (const Warning& warning : warnings)
+    if (warning.message.rfind("faces", 0) == 0) dropped += warning.count;
+  return dropped;
+}
+
+PolygonMesh polygons_of(const ShapeSet& shapes) {
+  PolygonMesh mesh;
+  mesh.positions = shapes.meshes[0].mesh.positions;
+  mesh.corners = shapes.meshes[0].mesh.corners;
+  return mesh;
+}
+
+ShapeSet shapes_of(const PolygonMesh& mesh) {
+  ShapeSet shapes = triangle_soup({});
+  shapes.meshes[0].mesh.positions = mesh.positions;
+  shapes.meshes[0].mesh.corners = mesh.corners;
+  return shapes;
+}
+
+StabilityResult run_poisoned_vertices(const StabilityRun& run) {
+  ProbeRandom random(46);
+  const ShapeSet ball = ball_of_triangles(48, 24, 1, {0, 0, 0});
+  PolygonMesh mesh = polygons_of(ball);
+  for (std::size_t i = 7; i < mesh.positions.size(); i += 31) mesh.positions[i].y = i % 2 == 0 ? kPoison : kInfinity;
+  std::size_t poisoned = 0, untreated = 0;
+  for (std::size_t t = 0; t < mesh.face_count(); ++t) {
+    const Vec3f &a = mesh.positions[mesh.corners[3 * t]], &b = mesh.positions[mesh.corners[3 * t + 1]],
+                &c = mesh.positions[mesh.corners[3 * t + 2]];
+    if (is_finite_vector(a) && is_finite_vector(b) && is_finite_vector(c)) continue;
+    ++poisoned;
+    untreated += !is_finite_vector(detail::solve_triangle(a, b, c, 0.25f, 0.25f).position);
+  }
+  const std::size_t before = mesh.face_count();
+  const std::int64_t counted = settled_drops(mesh);
+  const ShapeSet settled = shapes_of(mesh);
+  std::size_t left = 0;
+  for (const Vec3f& p : settled.meshes[0].mesh.positions) left += !is_finite_vector(p);
+  StabilityResult result;
+  const auto share = [&](std::size_t n) { return static_cast<double>(n) / static_cast<double>(poisoned); };
+  result.figures.push_back(of_comparison("triangles as they were read",
+                                         "share of poisoned ones whose points are no numbers", share(untreated), 1, 1,
+                                         "1; Embree drops such triangles without a word"));
+  result.figures.push_back(
+      of_renderer("settled mesh", "faces dropped, of the poisoned ones", share(before - mesh.face_count()), 1, 1, "1"));
+  result.figures.push_back(of_renderer("settled mesh", "faces counted in the warning, of the poisoned ones",
+                                       static_cast<double>(counted) / static_cast<double>(poisoned), 1, 1, "1"));
+  result.figures.push_back(of_renderer("settled mesh", "positions and hits that are not finite",
+                                       static_cast<double>(left + not_finite_surfaces(run, settled, random)), 0, 0,
+                                       "0"));
+  return result;
+}
+
+StabilityResult run_degenerate_triangles(const StabilityRun& run) {
+  ProbeRandom random(47);
+  const ShapeSet ball = ball_of_triangles(48, 24, 1, {0, 0, 0});
+  PolygonMesh mesh = polygons_of(ball);
+  const std::size_t sound = mesh.face_count();
+  // On every fifth triangle's edge one more: with a corner used twice, with two corners in one place, or with a third
+  // corner on the edge, as near as single precision has it.
+  std::size_t repeated = 0, empty = 0, without_normal = 0;
+  for (std::uint32_t t = 0; t < sound; t += 5) {
+    const std::uint32_t a = mesh.corners[3 * t], b = mesh.corners[3 * t + 1];
+    const Vec3f p = mesh.positions[a], q = mesh.positions[b];
+    std::uint32_t third = a;
+    if (t % 3 == 0) {
+      ++repeated;
+    } else {
+      third = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.push_back(t % 3 == 1 ? q : (p + q) * 0.5f);
+      if (t % 3 == 1) {
+        ++empty;
+        without_normal += !is_finite_vector(unit((q - p).cross(mesh.positions[third] - p)));
+      }
+    }
+    for (const std::uint32_t corner : {a, b, third}) mesh.corners.push_back(corner);
+  }
+  const std::size_t planted = mesh.face_count();
+  const std::int64_t counted = settled_drops(mesh);
+  const ShapeSet settled = shapes_of(mesh);
+  const EmbreeIntersector tracer(settled, run.tracer_options());
+  const TriangleReference truth(settled);
+  const RayJudge judge(settled, tracer, settled, truth);
+  // Rays at the triangles without area themselves.
+  std::size_t on_empty = 0, unexplained = 0;
+  for (std::size_t t = sound; t < settled.meshes[0].mesh.triangle_count(); ++t) {
+    std::vector<ProbeRay> rays;
+    for (int i = 0; i < 20; ++i) {
+      const double s = random.uniform(0, 1);
+      rays.push_back(ray_to(random.in_cube(0.3), corner_of(settled, t, 0) * (1 - s) + corner_of(settled, t, 1) * s));
+    }
+    const auto hits = hits_of(tracer, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const ComparedRay ray{rays[i].origin, rays[i].direction, kInfinity, false};
+      unexplained += judge.nearest(ray, hits[i], judge.ask_truth(ray)).verdict == RayVerdict::defect;
+      if (hits[i].geometry == kNoGeometry || hits[i].primitive < sound) continue;
+      on_empty += corner_of(settled, hits[i].primitive, 1) == corner_of(settled, hits[i].primitive, 2);
+    }
+  }
+  StabilityResult result;
+  result.figures.push_back(of_comparison("cross product over its length", "triangles of area 0 without a normal, share",
+                                         static_cast<double>(without_normal) / static_cast<double>(empty), 1, 1,
+                                         "1: 0 / 0"));
+  result.figures.push_back(of_renderer("settled mesh", "faces that use a corner twice: dropped, share",
+                                       static_cast<double>(planted - mesh.face_count()) / static_cast<double>(repeated),
+                                       1, 1, "1"));
+  result.figures.push_back(of_renderer("settled mesh", "faces that use a corner twice: counted in the warning, share",
+                                       static_cast<double>(counted) / static_cast<double>(repeated), 1, 1, "1"));
+  result.figures.push_back(of_renderer("the renderer's tracer", "rays at triangles of area 0 that hit them",
+                                       static_cast<double>(on_empty), 0, 0, "0"));
+  result.figures.push_back(of_renderer("the renderer's tracer", "answers there that no bound on rounding allows",
+                                       static_cast<double>(unexplained), 0, 0, "0 (docs/validation.md)"));
+  result.figures.push_back(of_renderer("the renderer's tracer", "hits without a place or a normal",
+                                       static_cast<double>(not_finite_surfaces(run, settled, random)), 0, 0, "0"));
+  return result;
+}
+
+StabilityResult run_coplanar_rays(const StabilityRun& run) {
+  ProbeRandom random(48);
+  std::size_t level_hits = 0, level_truth = 0, unexplained = 0, tilted_hits = 0, rays_each = 0;
+  for (const bool level : {true, false}) {
+    const Vec3d n = level ? Vec3d(0, 1, 0) : unit(Vec3d(1, 2, 3)), x = unit(n.cross(Vec3d(0, 0, 1))), y = n.cross(x);
+    const Vec3d place = level ? Vec3d(0, 0.3, 0) : Vec3d(0.1, 0.2, 0.3);
+    const ShapeSet quad = quad_of_triangles(place - x - y, x * 2.0, y * 2.0);
+    const EmbreeIntersector tracer(quad, run.tracer_options());
+    const TriangleReference truth(quad);
+    const RayJudge judge(quad, tracer, quad, truth);
+    std::vector<ProbeRay> rays;
+    for (std::size_t i = 0; i < probe_count(run, 10000, 4000); ++i) {
+      const double azimuth = random.uniform(0, 7);
+      const Vec3d from = place + (x * std::cos(azimuth) + y * std::sin(azimuth)) * 3.0;
+      rays.push_back(ray_to(from, place + x * random.uniform(-0.9, 0.9) + y * random.uniform(-0.9, 0.9)));
+      if (level) rays.back().direction.y = 0, rays.back().origin.y = 0.3f;
+    }
+    rays_each = rays.size();
+    const auto hits = hits_of(tracer, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const ComparedRay ray{rays[i].origin, rays[i].direction, kInfinity, false};
+      const ReferenceHit found = judge.ask_truth(ray);
+      const bool hit = hits[i].geometry != kNoGeometry;
+      (level ? level_hits : tilted_hits) += hit;
+      if (level) level_truth += found.hit();
+      unexplained += judge.nearest(ray, hits[i], found).verdict == RayVerdict::defect;
+    }
+  }
+  StabilityResult result;
+  const auto share = [&](std::size_t n) { return static_cast<double>(n) / static_cast<double>(rays_each); };
+  result.figures.push_back(of_renderer("the renderer's tracer", "rays in a level quad's plane that hit it",
+                                       share(level_hits), 0, 0, "0 by convention (Embree issue 298)"));
+  result.figures.push_back(
+      of_renderer("watertight test in double", "the same", share(level_truth), 0, 0, "0 by convention"));
+  result.figures.push_back(of_comparison("rays rounded about a tilted plane", "rays that hit", share(tilted_hits), 0.05,
+                                         0.95, "no limit known: rounding decides on which side each end lies"));
+  result.figures.push_back(of_renderer("the renderer's tracer", "answers that no bound on rounding allows",
+                                       static_cast<double>(unexplained), 0, 0, "0 (docs/validation.md)"));
+  return result;
+}
+
+StabilityResult run_bad_rays(const StabilityRun& run) {
+  ProbeRandom random(49);
+  const ShapeSet ball = ball_of_triangles(32, 16, 1, {0, 0, 0});
+  const EmbreeIntersector tracer(ball, run.tracer_options());
+  std::size_t found = 0, bad_rays = 0, moved = 0;
+  const Vec3f poisons[] = {{kPoison, 0, 0}, {0, kInfinity, 0}, {0, 0, -kInfinity}};
+  for (int round = 0; round < 40; ++round) {
+    std::vector<ProbeRay> sane, poisoned;
+    for (int i = 0; i < 16; ++i) sane.push_back(ray_to(random.direction() * 2.0, random.in_cube(0.4)));
+    poisoned = sane;
+    const std::size_t at = random.below(16), kind = random.below(7);
+    if (kind < 3)
+      poisoned[at].origin += poisons[kind];
+    else if (kind < 6)
+      poisoned[at].direction += poisons[kind - 3];
+    else
+      poisoned[at].direction = Vec3f(0, 0, 0);
+    ++bad_rays;
+    const auto expected = hits_of(tracer, sane), got = hits_of(tracer, poisoned);
+    for (std::size_t i = 0; i < 16; ++i)
+      if (i == at)
+        found += got[i].geometry != kNoGeometry;
+      else
+        moved += got[i].geometry != expected[i].geometry || got[i].primitive != expected[i].primitive;
+  }
+  StabilityResult result;
+  result.figures.push_back(of_renderer("check before the tracer", "rays without direction or number that hit",
+                                       static_cast<double>(found), 0, 0,
+                                       "0; Debian's Embree 3 ends the process at a NaN without the check"));
+  result.figures.push_back(of_renderer("check before the tracer", "rays beside them whose answer changed",
+                                       static_cast<double>(moved), 0, 0, "0"));
+  result.figures.push_back(
+      of_renderer("this case", "bad rays asked about", static_cast<double>(bad_rays), 40, 40, "40"));
+  return result;
+}
+
+}  // namespace
+
+std::vector<StabilityCase> bad_input_cases() {
+  return {{46, "poisoned-vertices", "Vertices that are no numbers", "NaN and infinities among a ball's vertices",
+           "faces are dropped, counted and warned of when the mesh is read; off in the first figure",
+           "Embree README (invalid geometry)", run_poisoned_vertices},
+          {47, "degenerate-triangles", "Triangles without area", "corners used twice, corners on the opposite edge",
+           "dropped and counted when the mesh is read; normals that hold for any area", "pbrt-v4 shapes tests",
+           run_degenerate_triangles},
+          {48, "coplanar-rays", "Rays in a triangle's plane", "rays along a level and a tilted quad",
+           "no hit, by convention", "Embree issue 298", run_coplanar_rays},
+          {49, "bad-rays", "Rays that are no rays", "NaN, infinities and directions of length 0 in packets",
+           "every ray is checked before the tracer has it", "Embree's nan_test", run_bad_rays}};
+}
+
+}  // namespace raytree::benchmarks
