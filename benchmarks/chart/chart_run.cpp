@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <set>
 
 #include "benchmarks/report_page.h"
@@ -200,7 +201,10 @@ class ChartMeasurement {
     const std::string key = text_hash(render_key(scene));
     if (keys_.count(key) != 0) return;  // as another setting
     phase(setting.part == SweepPart::defaults ? "the scene's own settings" : command_text(setting.flags));
-    const double most = std::max(0.5, std::min(kPointShare * options_.budget_seconds, seconds_left()));
+    // What everything is compared with is measured whatever it takes.
+    const double most = setting.part == SweepPart::defaults
+                            ? std::numeric_limits<double>::infinity()
+                            : std::max(0.5, std::min(kPointShare * options_.budget_seconds, seconds_left()));
     if (scene.prepare.tracer == Tracer::spheres) {
       const double estimate = estimated_seconds(scene);
       if (estimate > most) {
