@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "app/budget.h"
 #include "app/commands.h"
 #include "app/exit_status.h"
 #include "app/messages.h"
@@ -33,17 +34,6 @@ struct BenchOptions {
 
   bool standard() const { return scene.scene == kStandardSet; }
 };
-
-/// Seconds: "60s", "2m", "1.5h" or a number.
-double parse_budget(const std::string& text) {
-  if (text.empty()) return 0;
-  const std::size_t unit = std::string("smh").find(text.back());
-  const double number = parse_real("--budget", unit == std::string::npos ? text : text.substr(0, text.size() - 1));
-  const double seconds = number * (unit == std::string::npos ? 1 : std::pow(60.0, double(unit)));
-  if (!(seconds >= 1) || !(seconds < 1e6))
-    throw usage_error(fmt::format("--budget: \"{}\" is not a time from 1s on, for example 60s or 2m", text));
-  return seconds;
-}
 
 std::optional<BenchOptions> parse_bench_options(const Words& words) {
   BenchOptions options;
@@ -90,7 +80,7 @@ std::optional<BenchOptions> parse_bench_options(const Words& words) {
   // Rays are asked again and again: what they cost is what counts, not the build.
   if (options.scene.hierarchy.empty() && options.scene.memory.empty()) options.scene.hierarchy = "balanced";
   options.threads = parse_threads(threads);
-  options.budget = parse_budget(budget);
+  if (!budget.empty()) options.budget = parse_budget(budget);
   benchmarks::NameFilter check(options.filter);
   if (options.repetitions < 1 || options.repetitions > kMostRepetitions)
     throw usage_error(fmt::format("--repetitions: {} is not within 1 and {}", options.repetitions, kMostRepetitions));

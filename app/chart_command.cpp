@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/budget.h"
 #include "app/commands.h"
 #include "app/exit_status.h"
 #include "app/interruption.h"
@@ -29,25 +30,12 @@ namespace fs = std::filesystem;
 using benchmarks::ChartScene;
 
 constexpr int kChartWidth = 400;  ///< pixels, where --size says nothing; the scene's own if that is less
-constexpr double kLeastBudget = 1, kMostBudget = 7 * 24 * 3600;  ///< seconds
 
 struct ChartFlags {
   std::string scene, output, size, camera, budget = "2m", threads;
   std::vector<std::string> sets, also;
   bool fresh = false, quiet = false;
 };
-
-/// "20s", "2m", "1.5h"; a bare number is seconds.
-double parse_budget(const std::string& text) {
-  const std::string units = "smh";
-  const std::size_t unit = text.empty() ? std::string::npos : units.find(text.back());
-  constexpr double kSeconds[] = {1, 60, 3600};
-  const double number = parse_real("--budget", unit == std::string::npos ? text : text.substr(0, text.size() - 1));
-  const double seconds = number * (unit == std::string::npos ? 1 : kSeconds[unit]);
-  if (!(seconds >= kLeastBudget && seconds <= kMostBudget))
-    throw usage_error(fmt::format("--budget: \"{}\" is not within 1s and 168h; for example 20s, 2m or 1.5h", text));
-  return seconds;
-}
 
 /// Words of a line, apart by blanks; single quotes hold blanks together.
 Words split_words(const std::string& line) {

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "app/budget.h"
 #include "app/commands.h"
 #include "app/exit_status.h"
 #include "app/interruption.h"
@@ -13,6 +14,8 @@
 #include "app/progress.h"
 #include "app/render_options.h"
 #include "app/suggestion.h"
+#include "benchmarks/stability/heat_map_svg.h"
+#include "benchmarks/stability/stability_maps.h"
 #include "benchmarks/stability/stability_page.h"
 #include "benchmarks/stability/stability_report.h"
 
@@ -20,24 +23,18 @@ namespace raytree::app {
 namespace {
 
 using benchmarks::GroupedCase;
+using benchmarks::StabilityMap;
 using benchmarks::StabilityReport;
 
+constexpr const char* kAllCases = "*";
+
 struct StabilityCommandOptions {
-  std::string folder, filter = "*";
+  std::string folder, filter = kAllCases;
   benchmarks::StabilityFaults faults;
   double effort = 1;
   int threads = 0;
   bool list = false, json = false, quiet = false;
 };
-
-/// Seconds of "90", "90s", "1.5m" or "1h".
-double suite_budget(const std::string& text) {
-  constexpr std::string_view kUnits = "smh";
-  const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
-  const double number = parse_real("--budget", unit == std::string_view::npos ? text : text.substr(0, text.size() - 1));
-  if (!(number > 0)) throw usage_error(fmt::format("--budget: \"{}\" is not a time, for example 60s or 2m", text));
-  return number * (unit == 1 ? 60 : unit == 2 ? 3600 : 1);
-}
 
 benchmarks::StabilityFaults parse_faults(const std::vector<std::string>& names) {
   benchmarks::StabilityFaults faults;
@@ -80,7 +77,7 @@ std::optional<StabilityCommandOptions> parse_stability_options(const Words& word
   prepare_usage(command);
   if (!parse_usage(command, words)) return std::nullopt;
   options.faults = parse_faults(faults);
-  options.effort = benchmarks::stability_effort(suite_budget(budget));
+  options.effort = benchmarks::stability_effort(parse_budget(budget));
   options.threads = parse_threads(threads);
   if (options.folder.empty() && !options.list)
     throw usage_error("no output: add -o DIR, a folder for the page, for example -o stability");
@@ -104,8 +101,20 @@ void make_folder(const std::string& folder) {
     throw Error(ErrorKind::failure, {}, fmt::format("{}: cannot make this folder: {}", folder, error.message()));
 }
 
-StabilityReport measured(const StabilityCommandOptions& options, const std::vector<GroupedCase>& cases,
-                         Progress& progress, const Interruption& interruption) {
+struct MeasuredSuite {
+  StabilityReport report;
+  std::vector<StabilityMap> maps;  ///< where all cases are run
+
+  std::vector<std::string> broken_promises() const {
+    std::vector<std::string> broken;
+    for (const StabilityMap& map : maps)
+      for (std::string& promise : benchmarks::broken_promises(map)) broken.push_back(std::move(promise));
+    return broken;
+  }
+};
+
+MeasuredSuite measured(const StabilityCommandOptions& options, const std::vector<GroupedCase>& cases,
+                       Progress& progress, const Interruption& interruption) {
   benchmarks::StabilityOptions run;
   run.run.faults = options.faults;
   run.run.effort = options.effort;
@@ -116,14 +125,37 @@ StabilityReport measured(const StabilityCommandOptions& options, const std::vect
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(options.threads));
   tbb::task_arena arena(options.threads);
-  StabilityReport report;
-  arena.execute([&] { report = run_stability(cases, run); });
-  return report;
+  MeasuredSuite suite;
+  arena.execute([&] {
+    suite.report = run_stability(cases, run);
+    if (options.filter != kAllCases || !suite.report.complete) return;
+    progress.phase("stability maps");
+    suite.maps = benchmarks::stability_maps(run.run);
+  });
+  suite.report.complete &= !interruption.stop();
+  return suite;
 }
 
-void write_stability(const std::string& folder, const StabilityReport& report, const std::string& json) {
+std::string json_text(const MeasuredSuite& suite) {
+  return benchmarks::stability_json(suite.report,
+                                    suite.maps.empty() ? std::string() : benchmarks::stability_maps_json(suite.maps));
+}
+
+std::string table_text(const MeasuredSuite& suite) {
+  std::string text = benchmarks::stability_text(suite.report);
+  for (const StabilityMap& map : suite.maps) text += fmt::format("map {}: {}\n", map.name, map.envelope);
+  for (const std::string& broken : suite.broken_promises()) text += "BROKEN PROMISE " + broken + "\n";
+  return text;
+}
+
+void write_stability(const std::string& folder, const MeasuredSuite& suite, const std::string& json) {
   make_folder(folder);
-  const std::string page = benchmarks::stability_page(report);
+  std::vector<benchmarks::PageSection> sections;
+  if (!suite.maps.empty()) {
+    sections.push_back({"maps", "Where rays hold", ""});
+    for (const StabilityMap& map : suite.maps) sections.back().html += benchmarks::stability_map_html(map);
+  }
+  const std::string page = benchmarks::stability_page(suite.report, sections);
   const std::filesystem::path path(folder);
   write_file_atomically((path / "stability.html").string(), page.data(), page.size());
   write_file_atomically((path / "stability.json").string(), json.data(), json.size());
@@ -145,16 +177,16 @@ int stability_command(const Words& words) {
   make_folder(options->folder);
   Progress progress(options->quiet ? ProgressMode::none : ProgressMode::automatic);
   const Interruption interruption([&progress] { progress.abandon(); });
-  const StabilityReport report = measured(*options, cases, progress, interruption);
+  const MeasuredSuite suite = measured(*options, cases, progress, interruption);
   progress.clear();
-  if (!report.complete) {
+  if (!suite.report.complete) {
     print_message("raytree: interrupted");
     return kSignalBase + interruption.signal();
   }
-  const std::string json = benchmarks::stability_json(report);
-  write_stability(options->folder, report, json);
-  print_result(options->json ? json : benchmarks::stability_text(report));
-  return report.figures().fails > 0 ? kFallsShort : kSuccess;
+  const std::string json = json_text(suite);
+  write_stability(options->folder, suite, json);
+  print_result(options->json ? json : table_text(suite));
+  return suite.report.figures().fails > 0 || !suite.broken_promises().empty() ? kFallsShort : kSuccess;
 }
 
 }  // namespace raytree::app

@@ -19,8 +19,8 @@ using namespace samples;
 
 // --- row 51 ---
 
-constexpr int kCoarse = 3, kFine = 8;  ///< segments of an edge in the south and in the north
-constexpr std::size_t kSouthern = 4;   ///< octants of the south come first
+constexpr int kCoarseRate = 3, kFineRate = 8;  ///< segments of an edge in the south and in the north
+constexpr std::size_t kSouthern = 4;           ///< octants of the south come first
 
 PatchSurface surface_of(const std::vector<BezierPatch>& patches) {
   Warnings warnings;
@@ -34,21 +34,21 @@ ShapeSet uneven_sphere(bool shared) {
   ShapeSet shapes;
   if (shared) {
     const PatchSurface surface = surface_of(octants);
-    TessellationRates rates = uniform_rates(surface, kFine);
+    TessellationRates rates = uniform_rates(surface, kFineRate);
     for (std::size_t face = 0; face < kSouthern; ++face) {
-      rates.inner[face] = {kCoarse, kCoarse};
-      for (const FaceEdge& side : surface.sides(face)) rates.edges[side.edge] = kCoarse;
+      rates.inner[face] = {kCoarseRate, kCoarseRate};
+      for (const FaceEdge& side : surface.sides(face)) rates.edges[side.edge] = kCoarseRate;
     }
     for (std::size_t face = kSouthern; face < octants.size(); ++face)
-      for (const FaceEdge& side : surface.sides(face)) rates.edges[side.edge] = kFine;
+      for (const FaceEdge& side : surface.sides(face)) rates.edges[side.edge] = kFineRate;
     shapes.meshes.resize(1);
     shapes.meshes[0].mesh = tessellate(surface, rates);
     return shapes;
   }
   shapes.meshes.resize(2);
   const auto middle = octants.begin() + kSouthern;
-  shapes.meshes[0].mesh = tessellate_uniformly(surface_of({octants.begin(), middle}), kCoarse);
-  shapes.meshes[1].mesh = tessellate_uniformly(surface_of({middle, octants.end()}), kFine);
+  shapes.meshes[0].mesh = tessellate_uniformly(surface_of({octants.begin(), middle}), kCoarseRate);
+  shapes.meshes[1].mesh = tessellate_uniformly(surface_of({middle, octants.end()}), kFineRate);
   return shapes;
 }
 
@@ -62,10 +62,10 @@ std::vector<Vec3d> points_in_the_gap(int count) {
   std::vector<Vec3d> points;
   while (static_cast<int>(points.size()) < count) {
     // Of the fine chain, and where the line to the center meets the coarse one's chord.
-    const double u = along(random) * kFine, t = u - std::floor(u);
-    const Vec3d fine = at(std::floor(u) / kFine) * (1 - t) + at((std::floor(u) + 1) / kFine) * t;
-    for (int i = 0; i < kCoarse; ++i) {
-      const Vec3d a = at(double(i) / kCoarse), b = at(double(i + 1) / kCoarse), up(0, 1, 0);
+    const double u = along(random) * kFineRate, t = u - std::floor(u);
+    const Vec3d fine = at(std::floor(u) / kFineRate) * (1 - t) + at((std::floor(u) + 1) / kFineRate) * t;
+    for (int i = 0; i < kCoarseRate; ++i) {
+      const Vec3d a = at(double(i) / kCoarseRate), b = at(double(i + 1) / kCoarseRate), up(0, 1, 0);
       if (up.dot(a.cross(fine)) * up.dot(fine.cross(b)) < 0 || fine.dot(a + b) < 0) continue;
       const Vec3d across = (b - a).cross(up);
       const double share = a.dot(across) / fine.dot(across);  // of `fine`, on the chord
@@ -127,7 +127,7 @@ StabilityResult uneven_rates(const StabilityRun& run) {
 // --- row 66 ---
 
 /// A pixel of one unit everywhere, so that pixels are units.
-const PixelSize kUnit{};
+const PixelSize kUnitPixel{};
 
 /// Least distance from a point to the patch, by looking ever closer at where it is least.
 double distance_to(const BezierPatch& patch, const Vec3d& point) {
@@ -167,7 +167,7 @@ StabilityResult patch_spheres(const StabilityRun& run) {
           const SphereRay ray(from, along);
           PatchHit hit;
           hit_any = intersect_patch(patch, ray, sphere.inside(ray), std::numeric_limits<double>::infinity(),
-                                    {kUnit, radius}, hit);
+                                    {kUnitPixel, radius}, hit);
           return hit_any ? distance_to(patch, from + along * hit.distance) / radius : 0;
         };
         const double u = share(random), v = share(random);
@@ -198,8 +198,8 @@ StabilityResult patch_spheres(const StabilityRun& run) {
     const SphereRay ray({1, 1.1, 5}, {0.01, 0.02, -1});
     PatchHit hit;
     const double radius = std::ldexp(whole.radius, -levels) * (1 + 1e-9);
-    const bool found =
-        intersect_patch(flat, ray, whole.inside(ray), std::numeric_limits<double>::infinity(), {kUnit, radius}, hit);
+    const bool found = intersect_patch(flat, ray, whole.inside(ray), std::numeric_limits<double>::infinity(),
+                                       {kUnitPixel, radius}, hit);
     levels_off = std::max(levels_off, found ? std::abs(hit.level - levels) : 99);
   }
   result.figures.push_back(held("spheres about parts", "divisions less log2(R / r), 0 to 19", levels_off, 0, 0, "0"));

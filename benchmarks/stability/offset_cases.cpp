@@ -86,7 +86,7 @@ std::vector<double> false_self_hits(const StabilityRun& run, const std::vector<L
 
 /// A faceted ball over a tilted floor, 1e4 units large, lit by a sun; shadow rays start by `from`.
 StabilityPicture shadow_picture(const StabilityRun& run, const std::string& caption, const Leaving& from) {
-  constexpr int kWidth = 240, kHeight = 160;
+  constexpr int kPictureWidth = 240, kPictureHeight = 160;
   constexpr double kSize = 1e4;
   ShapeSet shapes = ball_of_triangles(32, 16, kSize, {0, 1.2 * kSize, 0});
   ShapeSet floor = quad_of_triangles(Vec3d(-8, -1, -8) * kSize, Vec3d(0, 0.6, 16) * kSize, Vec3d(16, 1.1, 0) * kSize);
@@ -95,10 +95,11 @@ StabilityPicture shadow_picture(const StabilityRun& run, const std::string& capt
   const Vec3d eye = Vec3d(1, 4, 7) * kSize, sun = unit(Vec3d(1, 1.2, 0.4));
   const Vec3d ahead = unit(Vec3d(0, 0.7, 0) * kSize - eye), right = unit(ahead.cross(Vec3d(0, 1, 0))),
               up = right.cross(ahead);
-  ProbeCanvas canvas(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      const Vec3d d = ahead + right * ((x + 0.5 - kWidth / 2.0) / kHeight) + up * ((kHeight / 2.0 - y - 0.5) / kHeight);
+  ProbeCanvas canvas(kPictureWidth, kPictureHeight);
+  for (int y = 0; y < kPictureHeight; ++y)
+    for (int x = 0; x < kPictureWidth; ++x) {
+      const Vec3d d = ahead + right * ((x + 0.5 - kPictureWidth / 2.0) / kPictureHeight) +
+                      up * ((kPictureHeight / 2.0 - y - 0.5) / kPictureHeight);
       const ProbeRay ray = ray_to(eye, eye + d);
       const Hit hit = tracer.intersect_one(ray.origin, ray.direction, kInfinity);
       if (hit.geometry == kNoGeometry) {
