@@ -1,6 +1,5 @@
 // `raytree stability`: runs the catalogue of failures and says which methods hold.
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <CLI/CLI.hpp>
@@ -122,8 +121,7 @@ MeasuredSuite measured(const StabilityCommandOptions& options, const std::vector
   run.on_case = [&](const benchmarks::StabilityCase& done, std::size_t count, std::size_t total) {
     progress.phase(fmt::format("{} of {}: {}", count, total, done.name));
   };
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(options.threads));
+  // No limit on all of TBB: the cases about threads bring numbers of their own.
   tbb::task_arena arena(options.threads);
   MeasuredSuite suite;
   arena.execute([&] {

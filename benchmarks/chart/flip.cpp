@@ -14,7 +14,7 @@ namespace raytree::benchmarks {
 namespace {
 
 using Triple = std::array<double, 3>;
-using Plane = std::vector<float>;
+using FlipPlane = std::vector<float>;
 
 /// One axis of a filter: taps from -radius to radius.
 using Taps = std::vector<double>;
@@ -100,10 +100,10 @@ double color_error(double distance) {
 }
 
 /// The plane filtered along rows by `across` and along columns by `down`; pixels beyond the border are those on it.
-Plane filtered_plane(const Plane& plane, int width, int height, const Taps& across, const Taps& down) {
+FlipPlane filtered_plane(const FlipPlane& plane, int width, int height, const Taps& across, const Taps& down) {
   const auto columns = static_cast<std::size_t>(width);
   const int radius_x = static_cast<int>(across.size() / 2), radius_y = static_cast<int>(down.size() / 2);
-  Plane half(plane.size()), result(plane.size());
+  FlipPlane half(plane.size()), result(plane.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, height), [&](const tbb::blocked_range<int>& rows) {
     std::vector<double> padded(columns + across.size() - 1), sums(columns);
     for (int y = rows.begin(); y < rows.end(); ++y) {
@@ -142,7 +142,8 @@ constexpr SensitivityTerm kSensitivity[3][2] = {
 constexpr double kWidestSensitivity = 0.04;
 
 /// A channel as the eye resolves it. The sum of two Gaussians is not separable, each of them is.
-Plane resolved(const Plane& plane, int width, int height, const SensitivityTerm (&terms)[2], double per_degree) {
+FlipPlane resolved(const FlipPlane& plane, int width, int height, const SensitivityTerm (&terms)[2],
+                   double per_degree) {
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(kWidestSensitivity / (2 * kPi * kPi)) * per_degree));
   std::vector<double> sum(plane.size());
   double total = 0;
@@ -158,10 +159,10 @@ Plane resolved(const Plane& plane, int width, int height, const SensitivityTerm 
     for (double& tap : taps) tap /= one;
     const double weight = term.a * std::sqrt(kPi / term.b) * one * one;
     total += weight;
-    const Plane part = filtered_plane(plane, width, height, taps, taps);
+    const FlipPlane part = filtered_plane(plane, width, height, taps, taps);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * static_cast<double>(part[i]);
   }
-  Plane result(plane.size());
+  FlipPlane result(plane.size());
   for (std::size_t i = 0; i < sum.size(); ++i) result[i] = static_cast<float>(sum[i] / total);
   return result;
 }
@@ -174,7 +175,7 @@ void balance(Taps& taps) {
 }
 
 /// Magnitude of the first derivative (edges) or the second (points) of the Gaussian-smoothed plane.
-Plane detected(const Plane& plane, int width, int height, bool points, double per_degree) {
+FlipPlane detected(const FlipPlane& plane, int width, int height, bool points, double per_degree) {
   const double sigma = 0.5 * kFeatureWidth * per_degree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
   Taps smooth, slope;
@@ -187,9 +188,9 @@ Plane detected(const Plane& plane, int width, int height, bool points, double pe
   }
   for (double& tap : smooth) tap /= total;
   balance(slope);
-  const Plane x = filtered_plane(plane, width, height, slope, smooth),
-              y = filtered_plane(plane, width, height, smooth, slope);
-  Plane magnitude(plane.size());
+  const FlipPlane x = filtered_plane(plane, width, height, slope, smooth),
+                  y = filtered_plane(plane, width, height, smooth, slope);
+  FlipPlane magnitude(plane.size());
   for (std::size_t i = 0; i < plane.size(); ++i) magnitude[i] = std::hypot(x[i], y[i]);
   return magnitude;
 }
@@ -198,9 +199,9 @@ Plane detected(const Plane& plane, int width, int height, bool points, double pe
 
 FlipPicture flip_picture(int width, int height, const std::vector<float>& srgb, double pixels_per_degree) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  std::array<Plane, 3> channels;
-  for (Plane& plane : channels) plane.resize(pixels);
-  Plane achromatic(pixels);
+  std::array<FlipPlane, 3> channels;
+  for (FlipPlane& plane : channels) plane.resize(pixels);
+  FlipPlane achromatic(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
     Triple linear;
     for (std::size_t c = 0; c < 3; ++c)

@@ -39,7 +39,7 @@ RenderResult rendered_for(const StabilityRun& run, SceneDescription description,
   return render(scene, options);
 }
 
-StabilityPicture picture_of(std::string caption, const Film& film) {
+StabilityPicture stability_picture(std::string caption, const Film& film) {
   DisplayOptions options;
   options.ocio_config = "builtin";
   options.display = "sRGB";
@@ -49,7 +49,7 @@ StabilityPicture picture_of(std::string caption, const Film& film) {
 
 void add_picture(const StabilityRun& run, StabilityResult& result, std::string caption, SceneDescription description) {
   if (run.pictures)
-    result.pictures.push_back(picture_of(std::move(caption), rendered_for(run, std::move(description)).film));
+    result.pictures.push_back(stability_picture(std::move(caption), rendered_for(run, std::move(description)).film));
 }
 
 int scaled(const StabilityRun& run, int full, int least) {

@@ -24,7 +24,7 @@ RenderResult rendered_for(const StabilityRun& run, SceneDescription description,
                           const ChannelSet& channels = {ChannelGroup::color});
 
 /// As an sRGB display shows it.
-StabilityPicture picture_of(std::string caption, const Film& film);
+StabilityPicture stability_picture(std::string caption, const Film& film);
 
 /// Adds a picture of the scene, where the run asks for pictures.
 void add_picture(const StabilityRun& run, StabilityResult& result, std::string caption, SceneDescription description);

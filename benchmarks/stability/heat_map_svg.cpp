@@ -11,7 +11,7 @@
 namespace raytree::benchmarks {
 namespace {
 
-constexpr int kCellWidth = 36, kCellHeight = 26, kTop = 44, kFoot = 40;
+constexpr int kCellWidth = 36, kCellHeight = 26, kMapTop = 44, kMapFoot = 40;
 constexpr double kLetter = 6.2;  ///< width of one at 11 px, about
 
 struct HeatColor {
@@ -52,21 +52,21 @@ std::string heat_map_svg(const StabilityMap& map, std::size_t quantity) {
   for (const std::string& value : map.rows.values) longest = std::max(longest, value.size());
   const int left = 26 + static_cast<int>(kLetter * static_cast<double>(longest)) + 8;
   const int columns = static_cast<int>(map.columns.values.size()), rows = static_cast<int>(map.rows.values.size());
-  const int width = left + columns * kCellWidth + 4, height = kTop + rows * kCellHeight + kFoot;
+  const int width = left + columns * kCellWidth + 4, height = kMapTop + rows * kCellHeight + kMapFoot;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
       "aria-label=\"{2}: {3}\" font-family=\"system-ui, sans-serif\" font-size=\"11\" fill=\"var(--ink, #1d2126)\">\n"
       "<text x=\"{4}\" y=\"14\" font-size=\"13\" font-weight=\"600\">{3}</text>\n"
       "<text x=\"14\" y=\"{5}\" fill=\"var(--quiet, #667079)\" text-anchor=\"middle\" transform=\"rotate(-90 14 {5})\">"
       "{6}</text>\n",
-      width, height, escaped_html(map.title), escaped_html(shown.name), left, kTop + rows * kCellHeight / 2,
+      width, height, escaped_html(map.title), escaped_html(shown.name), left, kMapTop + rows * kCellHeight / 2,
       escaped_html(map.rows.label));
   for (int column = 0; column < columns; ++column)
     svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                       left + column * kCellWidth + kCellWidth / 2, kTop - 8,
+                       left + column * kCellWidth + kCellWidth / 2, kMapTop - 8,
                        escaped_html(map.columns.values[static_cast<std::size_t>(column)]));
   for (int row = 0; row < rows; ++row) {
-    const int y = kTop + row * kCellHeight;
+    const int y = kMapTop + row * kCellHeight;
     svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", left - 8, y + kCellHeight / 2 + 4,
                        escaped_html(map.rows.values[static_cast<std::size_t>(row)]));
     for (int column = 0; column < columns; ++column) {

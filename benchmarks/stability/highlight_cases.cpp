@@ -205,11 +205,11 @@ StabilityResult prism_flicker(const StabilityRun& run) {
 StabilityResult sides_needed(const StabilityRun& run) {
   StabilityResult result;
   constexpr double kExponent = 50, kWindow = 1.6;
-  constexpr int kWidth = 6000;
-  const std::vector<double> centers = pixel_centers(kWidth, kWindow / kWidth);
+  constexpr int kPixels = 6000;
+  const std::vector<double> centers = pixel_centers(kPixels, kWindow / kPixels);
   const auto seen_of = [&](ShadingMethod method, int sides, double turned_degrees) {
     return green_of(
-        highlit_scene(faceted_cylinder(sides, method, turned_degrees), kWidth, 1, kWindow / kWidth, kExponent), run);
+        highlit_scene(faceted_cylinder(sides, method, turned_degrees), kPixels, 1, kWindow / kPixels, kExponent), run);
   };
   const std::vector<float> exact = seen_of(ShadingMethod::limit, 0, 0);
   const FacetedCircle circle(0, 0);

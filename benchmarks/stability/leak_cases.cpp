@@ -64,16 +64,17 @@ EmbreeOptions default_mode() {
 
 /// Rays from inside a ball at edges: an edge a row, the places along it from left to right; orange where a ray leaves.
 StabilityPicture edge_picture(const std::string& caption, const RayIntersector& tracer, const ShapeSet& ball) {
-  constexpr int kWidth = 240, kEdges = 120;
-  ProbeCanvas canvas(kWidth, kEdges);
+  constexpr int kPictureWidth = 240, kEdges = 120;
+  ProbeCanvas canvas(kPictureWidth, kEdges);
   for (int y = 0; y < kEdges; ++y) {
     const auto triangle = static_cast<std::size_t>(y) * ball.meshes[0].mesh.triangle_count() / kEdges;
     const Vec3d a = corner_of(ball, triangle, static_cast<std::size_t>(y)),
                 b = corner_of(ball, triangle, static_cast<std::size_t>(y) + 1);
     std::vector<ProbeRay> rays;
-    for (int x = 0; x < kWidth; ++x) rays.push_back(ray_to({0.11, -0.07, 0.05}, a + (b - a) * ((x + 0.5) / kWidth)));
+    for (int x = 0; x < kPictureWidth; ++x)
+      rays.push_back(ray_to({0.11, -0.07, 0.05}, a + (b - a) * ((x + 0.5) / kPictureWidth)));
     const auto hits = hits_of(tracer, rays);
-    for (int x = 0; x < kWidth; ++x)
+    for (int x = 0; x < kPictureWidth; ++x)
       hits[static_cast<std::size_t>(x)].geometry == kNoGeometry ? canvas.set(x, y, 0.85, 0.4, 0.02)
                                                                 : canvas.set(x, y, 0.02, 0.05, 0.1);
   }

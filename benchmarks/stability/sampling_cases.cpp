@@ -89,7 +89,8 @@ StabilityResult small_objects(const StabilityRun& run) {
   result.figures.push_back(held("Whitted's least radius and areas", "area seen / pi r^2", sum / area, 1 - noise,
                                 1 + noise, "1, four deviations of leaves on the rims"));
   if (run.pictures)
-    result.pictures = {picture_of("A sample at each pixel's center", at_centers), picture_of("None is lost", adaptive)};
+    result.pictures = {stability_picture("A sample at each pixel's center", at_centers),
+                       stability_picture("None is lost", adaptive)};
   return result;
 }
 
@@ -139,7 +140,7 @@ StabilityResult mirrored_objects(const StabilityRun& run) {
     for (const auto& [column, row] : field.blocks) lost += covered_in_block(film, column, row) <= 0;
     const auto count = static_cast<double>(field.blocks.size());
     if (run.pictures)
-      result.pictures.push_back(picture_of(
+      result.pictures.push_back(stability_picture(
           minimum_level == 0 ? "Lamps in a mirror ball, least radius alone" : "Lamps in a mirror ball, minimum_level 3",
           film));
     if (minimum_level == 0)
@@ -173,16 +174,16 @@ SceneDescription strip_scene(double width, double slope, double shift, bool adap
 
 StabilityResult thin_strip(const StabilityRun& run) {
   StabilityResult result;
-  constexpr double kWidth = 0.1, kSlope = 1 / 50.0;
+  constexpr double kStripWidth = 0.1, kSlope = 1 / 50.0;
   constexpr int kColumns = 50;  // over which the strip climbs one pixel: it meets every height alike
   double worst_column = 0, least_column = 1, plain_columns = 0, worst_mean = 0;
   int longest_gap = 0;
-  const double expected = kWidth * std::sqrt(1 + kSlope * kSlope);
+  const double expected = kStripWidth * std::sqrt(1 + kSlope * kSlope);
   constexpr int kShifts = 16;
   for (int i = 0; i < kShifts; ++i) {
     const double shift = (i + 0.37) / kShifts;
-    const Film plain = rendered_for(run, strip_scene(kWidth, kSlope, shift, false)).film,
-               ours = rendered_for(run, strip_scene(kWidth, kSlope, shift, true)).film;
+    const Film plain = rendered_for(run, strip_scene(kStripWidth, kSlope, shift, false)).film,
+               ours = rendered_for(run, strip_scene(kStripWidth, kSlope, shift, true)).film;
     int gap = 0;
     double mean = 0;
     for (int x = 0; x < kColumns; ++x) {
