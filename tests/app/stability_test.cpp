@@ -27,6 +27,21 @@ TEST(StabilityCommand, LeavesTablePageAndJson) {
   EXPECT_TRUE(contains(page, "id=\"gouraud-highlight-loss\""));
 }
 
+TEST(StabilityCommand, PlantedFaultsEndInStatus3) {
+  TemporaryFolder folder;
+  const std::pair<const char*, const char*> faults[] = {{"no-offsets", "self-hits"}, {"not-robust", "edge-leaks"}};
+  for (const auto& [fault, name] : faults) {
+    const std::vector<std::string> command = {"stability", "-o", folder.path("out"), "--filter", name,
+                                              "--budget",  "6s"};
+    EXPECT_EQ(run_program(command).status, 0) << name;
+    std::vector<std::string> planted = command;
+    planted.insert(planted.end(), {"--plant", fault});
+    const ProgramResult result = run_program(planted);
+    EXPECT_EQ(result.status, 3) << fault;
+    EXPECT_TRUE(contains(result.out, " fails")) << result.out;
+  }
+}
+
 TEST(StabilityCommand, PrintsJsonAndHeedsBudgetAndPlantedFaults) {
   TemporaryFolder folder;
   const ProgramResult result =
