@@ -54,18 +54,27 @@ std::vector<std::string> module_candidates(const std::string& name) {
 class Module {
  public:
   explicit Module(std::string name) : name_(std::move(name)) {}
-  ~Module() {
-    if (loader_.joinable()) loader_.join();
-  }
+  ~Module() { wait(); }
 
   void preload() {
     const std::lock_guard lock(mutex_);
     if (loader_.joinable() || tried_) return;
     try {
       loader_ = std::thread([this] { load_once(); });
+      begun_here.modules.push_back(this);
     } catch (const std::system_error&) {
       // No thread to be had: the first use loads.
     }
+  }
+
+  /// Until what was begun to load is there.
+  void wait() {
+    std::thread loader;
+    {
+      const std::lock_guard lock(mutex_);
+      loader.swap(loader_);
+    }
+    if (loader.joinable()) loader.join();
   }
 
   const RaytreeImageIo& table() {
@@ -75,6 +84,17 @@ class Module {
   }
 
  private:
+  /// A thread that ends, or ends the program, waits for what it has begun to load. Of a program's end this comes before
+  /// everything else: libraries register the ends of their own static objects while they are loaded, and those would
+  /// run first and beneath the loading.
+  struct BegunHere {
+    std::vector<Module*> modules;
+    ~BegunHere() {
+      for (Module* module : modules) module->wait();
+    }
+  };
+  static thread_local BegunHere begun_here;
+
   void load_once() {
     std::call_once(once_, [this] { load(); });
     const std::lock_guard lock(mutex_);
@@ -109,6 +129,8 @@ class Module {
   const RaytreeImageIo* table_ = nullptr;
   std::string problem_;
 };
+
+thread_local Module::BegunHere Module::begun_here;
 
 /// Of all formats without a module of their own, and of reading.
 Module& image_module() {

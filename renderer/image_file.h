@@ -39,8 +39,8 @@ ImageFormat image_format(const std::string& path);
 bool holds_alpha(ImageFormat format);
 
 /// Begins loading the module that encodes `format` in a background thread; returns at once. Later calls wait for it,
-/// and so does the program's exit. Modules lie in the folder $RAYTREE_MODULES if that is set; else beside the program,
-/// in
+/// and so does the end of the calling thread, or of the program by it. Modules lie in the folder $RAYTREE_MODULES if
+/// that is set; else beside the program, in
 /// ../lib, ../lib/raytree or the installation's library folder relative to it. That one is missing is reported by the
 /// call that needs it, as an Error (failure) that names the paths tried.
 void preload_image_io(ImageFormat format);
