@@ -5,22 +5,6 @@
 
 namespace raytree::benchmarks {
 
-StabilityFigure held(std::string method, std::string quantity, double measured, double low, double high,
-                     std::string known) {
-  return {std::move(method), std::move(quantity), measured, low, high, std::move(known), StabilityExpectation::holds};
-}
-
-StabilityFigure known_failure(std::string method, std::string quantity, double measured, double low, double high,
-                              std::string known) {
-  return {std::move(method),
-          std::move(quantity),
-          measured,
-          low,
-          high,
-          std::move(known),
-          StabilityExpectation::fails_as_known};
-}
-
 Scene prepared_for(const StabilityRun& run, SceneDescription description, const PrepareOptions& options) {
   Warnings warnings;
   PrepareOptions preparing = options;

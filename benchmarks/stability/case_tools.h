@@ -1,4 +1,4 @@
-// What the stability cases of scenes share: figures in a line each, scenes prepared with the faults that the run
+// What the stability cases of scenes share: scenes prepared with the faults that the run
 // plants, and pictures.
 #pragma once
 
@@ -9,14 +9,6 @@
 #include "renderer/scene.h"
 
 namespace raytree::benchmarks {
-
-/// Of the renderer's own method: inside [low, high], or it is a defect.
-StabilityFigure held(std::string method, std::string quantity, double measured, double low, double high,
-                     std::string known);
-
-/// Of a method that fails, inside [low, high] as it is known to.
-StabilityFigure known_failure(std::string method, std::string quantity, double measured, double low, double high,
-                              std::string known);
 
 /// The scene behind the run's tracer: Embree without watertight edges where that is planted.
 Scene prepared_for(const StabilityRun& run, SceneDescription description, const PrepareOptions& options = {});

@@ -93,20 +93,20 @@ StabilityResult run_edge_leaks(const StabilityRun& run) {
     const TriangleReference truth(ball);
     const std::string where = far ? ", 2.7e5 radii away" : "";
     const auto at_edges = rays_from_inside(ball, center, LeakAim::edges, count, random);
-    result.figures.push_back(of_comparison("Embree, default mode", "rays at edges that leave a closed ball" + where,
+    result.figures.push_back(known_failure("Embree, default mode", "rays at edges that leave a closed ball" + where,
                                            share_escaping(plain, at_edges), 1e-2, kMostEdgeLeaks,
                                            "0.094 (Embree 3.13.5); below 1/4, as if two triangles decided apart"));
-    result.figures.push_back(of_renderer("Embree as the renderer uses it, robust", "the same",
-                                         share_escaping(in_use, at_edges), 0, gate,
-                                         "2e-6; 2e-5 is embree_verify's own limit for rays at random"));
+    result.figures.push_back(held("Embree as the renderer uses it, robust", "the same",
+                                  share_escaping(in_use, at_edges), 0, gate,
+                                  "2e-6; 2e-5 is embree_verify's own limit for rays at random"));
     result.figures.push_back(
-        of_renderer("as the renderer uses it", "rays at random that leave" + where,
-                    share_escaping(in_use, rays_from_inside(ball, center, LeakAim::anywhere, count, random)), 0, gate,
-                    "0 (embree_verify: at most 2e-5)"));
+        held("as the renderer uses it", "rays at random that leave" + where,
+             share_escaping(in_use, rays_from_inside(ball, center, LeakAim::anywhere, count, random)), 0, gate,
+             "0 (embree_verify: at most 2e-5)"));
     if (!far)
-      result.figures.push_back(of_renderer("watertight test in double", "rays at edges that leave",
-                                           share_escaping(truth, {at_edges.begin(), at_edges.begin() + 10000}), 0, 0,
-                                           "0 (Woop, Benthin and Wald 2013)"));
+      result.figures.push_back(held("watertight test in double", "rays at edges that leave",
+                                    share_escaping(truth, {at_edges.begin(), at_edges.begin() + 10000}), 0, 0,
+                                    "0 (Woop, Benthin and Wald 2013)"));
     if (far || !run.pictures) continue;
     result.pictures.push_back(
         edge_picture("120 edges, one a row, default mode: rays that leave (orange)", plain, ball));
@@ -126,14 +126,14 @@ StabilityResult run_corner_leaks(const StabilityRun& run) {
     const auto rays = rays_from_inside(ball, {0, 0, 0}, LeakAim::corners, count, random);
     const std::string quantity =
         sides == 64 ? "rays at corners that leave a ball of 3968 triangles" : "the same of 65024 triangles";
-    result.figures.push_back(of_comparison("Embree, default mode", quantity, share_escaping(plain, rays), 0.05,
+    result.figures.push_back(known_failure("Embree, default mode", quantity, share_escaping(plain, rays), 0.05,
                                            kMostCornerLeaks, "up to 0.31 (Embree 3.13.5); below 1/e"));
-    result.figures.push_back(of_comparison("Embree as the renderer uses it, robust", quantity,
+    result.figures.push_back(known_failure("Embree as the renderer uses it, robust", quantity,
                                            share_escaping(in_use, rays), 0, sides == 64 ? 0.01 : 0.05,
                                            "up to 0.023, the more the finer the mesh (Embree issues 181 and 381)"));
-    result.figures.push_back(of_renderer("watertight test in double (--intersector spheres, validate)", quantity,
-                                         share_escaping(truth, {rays.begin(), rays.begin() + 10000}), 0, 0,
-                                         "0 (Woop, Benthin and Wald 2013)"));
+    result.figures.push_back(held("watertight test in double (--intersector spheres, validate)", quantity,
+                                  share_escaping(truth, {rays.begin(), rays.begin() + 10000}), 0, 0,
+                                  "0 (Woop, Benthin and Wald 2013)"));
   }
   return result;
 }
@@ -207,13 +207,13 @@ StabilityResult run_double_hits(const StabilityRun& run) {
     const auto share = [&](std::size_t n) { return static_cast<double>(n) / static_cast<double>(count); };
     const bool edges = aim == LeakAim::edges;
     const std::string quantity = std::string("rays at ") + (edges ? "edges" : "corners") + " not met twice by a ball";
-    result.figures.push_back(of_comparison("going on from the hit point", quantity, share(naive), 0.1, 1,
+    result.figures.push_back(known_failure("going on from the hit point", quantity, share(naive), 0.1, 1,
                                            "0.5 and more: the surface itself is met again"));
     if (edges)
-      result.figures.push_back(of_renderer("shadow rays as they are followed", quantity, share(wrong), 0, 0,
-                                           "0: what lies on the plane crossed last is the same crossing"));
+      result.figures.push_back(held("shadow rays as they are followed", quantity, share(wrong), 0, 0,
+                                    "0: what lies on the plane crossed last is the same crossing"));
     else
-      result.figures.push_back(of_comparison("shadow rays as they are followed", quantity, share(wrong), 0, 0.05,
+      result.figures.push_back(known_failure("shadow rays as they are followed", quantity, share(wrong), 0, 0.05,
                                              "at most the rays that miss a corner: 0.023; 0.54 where an occlusion "
                                              "filter counts (Embree 3.13.5)"));
   }
@@ -242,13 +242,13 @@ StabilityResult run_outside_weights(const StabilityRun& run) {
   }
   StabilityResult result;
   // Embree's robust test takes U, V, W down to minus 2 half ulps of their sum; each quotient is off by 2 more.
-  result.figures.push_back(of_comparison("weights that Embree reports at edges and corners", "least weight", least,
+  result.figures.push_back(known_failure("weights that Embree reports at edges and corners", "least weight", least,
                                          -6 * double(kRoundoff), 0,
                                          "slightly negative is legal (Embree issues 131, 296 and 462)"));
   // Coordinates of at most 1: a weight off by 2 half ulps on each of two edges shorter than 0.2, three products, two
   // sums.
-  result.figures.push_back(of_renderer("place from weights", "out of the triangle's box, half ulps of the radius",
-                                       beyond / kRoundoff, 0, 4, "3 products and 2 sums: at most 4"));
+  result.figures.push_back(held("place from weights", "out of the triangle's box, half ulps of the radius",
+                                beyond / kRoundoff, 0, 4, "3 products and 2 sums: at most 4"));
   return result;
 }
 

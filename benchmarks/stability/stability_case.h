@@ -60,6 +60,20 @@ struct StabilityFigure {
   }
 };
 
+/// Of the renderer's own method: inside [low, high], or it is a defect.
+inline StabilityFigure held(std::string method, std::string quantity, double measured, double low, double high,
+                            std::string known) {
+  return {std::move(method), std::move(quantity), measured, low, high, std::move(known), StabilityExpectation::holds};
+}
+
+/// Of a method that is kept to be compared with, and fails inside [low, high] as it is known to.
+inline StabilityFigure known_failure(std::string method, std::string quantity, double measured, double low, double high,
+                                     std::string known) {
+  StabilityFigure figure = held(std::move(method), std::move(quantity), measured, low, high, std::move(known));
+  figure.expectation = StabilityExpectation::fails_as_known;
+  return figure;
+}
+
 /// A failure beside its remedy, or beside the truth; display-referred.
 struct StabilityPicture {
   std::string caption;
