@@ -131,10 +131,9 @@ SceneDescription read_scene_argument(const SceneFlags& flags, Warnings& warnings
   const std::string& name = flags.scene;
   std::error_code code;
   const fs::file_status status = fs::status(name, code);
-  if (!fs::exists(status)) {
-    if (!is_builtin_scene(name)) throw_unknown_scene(name);
-    return builtin_scene(name);
-  }
+  // A folder is no scene, so that the folder of a chart of "teapot" may have its name.
+  if (is_builtin_scene(name) && (!fs::exists(status) || fs::is_directory(status))) return builtin_scene(name);
+  if (!fs::exists(status)) throw_unknown_scene(name);
   if (fs::is_directory(status)) throw Error(ErrorKind::bad_input, {name, 0, ""}, "is a folder, not a scene");
   if (is_mesh_file_name(name) || is_patch_file_name(name)) return mesh_scene(name, warnings, wanted_image(flags));
   const std::string extension = lower_extension(name);

@@ -223,6 +223,8 @@ class Assembler {
       }
     }
     begin_phase("preparing " + shape.name);
+    // It is taken apart below: who holds it beside this description keeps theirs.
+    if (mesh.use_count() > 1) mesh = std::make_shared<PolygonMesh>(*mesh);
     count_faces(*mesh, summary);
     std::vector<std::optional<std::uint32_t>> group_materials;
     if (shape.material.empty()) group_materials = mesh_materials_.of_groups(*mesh, path.string());

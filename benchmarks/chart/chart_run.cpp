@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kEnough = 0.02;  ///< (quartile distance) / median / sqrt(samples) of a time that is known
 constexpr std::size_t kFewestSamples = 3, kMostSamples = 15;
-constexpr double kAloneShare = 0.6;     ///< of the budget: until then knobs are turned one at a time...
-constexpr double kCrossedShare = 0.75;  ///< ...until then several; then times are taken again
+constexpr double kAloneShare = 0.5;     ///< of the budget: until then knobs are turned one at a time...
+constexpr double kCrossedShare = 0.6;  ///< ...until then several; then times are taken again
 constexpr double kPointShare = 0.1;     ///< of the budget that one render may take
 constexpr int kEstimateEdge = 6;        ///< the naive tracer's time is guessed from a picture of 1/6 of the edges
 constexpr double kSecondsBetweenSaves = 15;

@@ -46,6 +46,14 @@ void expect_normals_outward(const Scene& scene, const Vec3d& world_center) {
   }
 }
 
+// Descriptions are values: a copy shares its meshes, and preparing it takes meshes apart.
+TEST(Scene, PreparingACopyLeavesTheOriginalWhole) {
+  const SceneDescription original = with_shape(mesh_shape(globe_mesh(1, 12, 8), "m", NormalSource::flat));
+  const std::size_t triangles = prepared(original).shapes->meshes[0].mesh.triangle_count();
+  EXPECT_GT(triangles, 100u);
+  EXPECT_EQ(prepared(original).shapes->meshes[0].mesh.triangle_count(), triangles);
+}
+
 TEST(Scene, TransformedMeshesKeepTheirNormalsOutward) {
   const Vec3d place(3, -2, 5);
   const Matrix44d transforms[] = {Matrix44d(),
