@@ -128,6 +128,10 @@ std::optional<ReferencePlan> plan_reference(const ChartSceneMaker& make, const S
     if (depth == kDeepTree) break;
   }
   plan.grid = std::clamp(static_cast<int>(std::sqrt(rays_allowed / (rays * pixels) / 2)), kFewestGrid, kMostGrid);
+  // The scene's own grid is to be compared with others.
+  const Antialiasing& own = traits.render.antialias;
+  while (own.method == Antialiasing::Method::grid && (own.grid_size == plan.grid || own.grid_size == plan.grid + 1))
+    ++plan.grid;
   plan.first =
       joined_words(flags_of(depth, cutoff, kFacetTolerance), {"--antialias", fmt::format("grid:{}", plan.grid)});
   plan.last =

@@ -19,10 +19,10 @@ namespace {
 
 constexpr double kEnough = 0.02;  ///< (quartile distance) / median / sqrt(samples) of a time that is known
 constexpr std::size_t kFewestSamples = 3, kMostSamples = 15;
-constexpr double kAloneShare = 0.5;     ///< of the budget: until then knobs are turned one at a time...
+constexpr double kAloneShare = 0.5;    ///< of the budget: until then knobs are turned one at a time...
 constexpr double kCrossedShare = 0.6;  ///< ...until then several; then times are taken again
-constexpr double kPointShare = 0.1;     ///< of the budget that one render may take
-constexpr int kEstimateEdge = 6;        ///< the naive tracer's time is guessed from a picture of 1/6 of the edges
+constexpr double kPointShare = 0.1;    ///< of the budget that one render may take
+constexpr int kEstimateEdge = 6;       ///< the naive tracer's time is guessed from a picture of 1/6 of the edges
 constexpr double kSecondsBetweenSaves = 15;
 
 /// Of the bits of the picture's light.
@@ -51,7 +51,7 @@ class ChartMeasurement {
     const std::optional<SceneTraits> traits = look_at_scene();
     if (!traits || !take_reference(*traits)) return interrupted();
     std::deque<ChartSetting> alone, crossed;
-    for (ChartSetting& setting : sweep_of(*traits, options_.added))
+    for (ChartSetting& setting : sweep_of(*traits, options_.added, result_.data.plan.grid))
       (setting.part == SweepPart::crossed ? crossed : alone).push_back(std::move(setting));
     keep_earlier_points(alone, crossed);
     if (!stale_.empty()) repeat();

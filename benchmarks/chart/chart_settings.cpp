@@ -36,11 +36,21 @@ Words sides_flags(const SceneTraits& traits, int sides) {
   return words;
 }
 
-std::vector<Knob> knobs_of(const SceneTraits& traits) {
+/// Grids that share no samples with the reference's halves, of `reference_grid` and one more.
+std::vector<std::string> fair_grids(const std::vector<int>& grids, int reference_grid) {
+  std::vector<std::string> fair;
+  for (const int grid : grids)
+    if (grid != reference_grid && grid != reference_grid + 1) fair.push_back(fmt::format("grid:{}", grid));
+  return fair;
+}
+
+std::vector<Knob> knobs_of(const SceneTraits& traits, int reference_grid) {
   std::vector<Knob> knobs;
   const Words adaptive =
       traits.render.antialias.method == Antialiasing::Method::whitted ? Words() : Words{"--antialias", "whitted"};
-  knobs.push_back(flag_knob("antialias", "--antialias", {"none", "whitted", "grid:2", "grid:3", "grid:4", "grid:8"}));
+  std::vector<std::string> antialias{"none", "whitted"};
+  for (std::string& grid : fair_grids({2, 3, 4, 5, 6, 8}, reference_grid)) antialias.push_back(std::move(grid));
+  knobs.push_back(flag_knob("antialias", "--antialias", antialias));
   knobs.push_back(flag_knob("threshold", "--threshold", {"0.5", "0.2", "0.1", "0.05", "0.02", "0.01", "0"}, adaptive));
   knobs.push_back(flag_knob("levels", "--levels", {"0", "1", "2", "3", "4", "5"}, adaptive));
   knobs.push_back(flag_knob("minimum level", "--minimum-level", {"0", "1", "2"}, adaptive));
@@ -79,14 +89,14 @@ using Choices = std::vector<Words>;
 
 /// All combinations of a few values of the knobs that errors hang on most, in an order in which any first part of them
 /// covers the whole.
-std::vector<ChartSetting> crossed_set(const SceneTraits& traits) {
+std::vector<ChartSetting> crossed_set(const SceneTraits& traits, int reference_grid) {
   std::vector<Choices> axes;
   axes.push_back({{"--antialias", "none"},
                   {"--antialias", "whitted", "--threshold", "0.3", "--levels", "2"},
                   {"--antialias", "whitted"},
                   {"--antialias", "whitted", "--threshold", "0.03"},
-                  {"--antialias", "grid:2"},
-                  {"--antialias", "grid:4"}});
+                  {"--antialias", fair_grids({2, 4}, reference_grid).front()},
+                  {"--antialias", fair_grids({4, 5, 6}, reference_grid).front()}});
   if (traits.branches) {
     axes.push_back({{"--depth", "3"}, {}, {"--depth", "16"}});
     axes.push_back({{"--cutoff", "0.03"}, {"--cutoff", "0.00392157"}, {"--cutoff", "0.0001"}});
@@ -187,17 +197,17 @@ SceneTraits scene_traits(const Scene& scene) {
   return traits;
 }
 
-std::vector<ChartSetting> sweep_of(const SceneTraits& traits, const std::vector<Words>& added) {
+std::vector<ChartSetting> sweep_of(const SceneTraits& traits, const std::vector<Words>& added, int reference_grid) {
   std::vector<ChartSetting> settings{{"defaults", "the scene's own", {}, SweepPart::defaults}}, between;
   for (const Words& words : added) settings.push_back({"added", command_text(words), words, SweepPart::added});
-  for (const Knob& knob : knobs_of(traits))
+  for (const Knob& knob : knobs_of(traits, reference_grid))
     for (std::size_t i = 0; i < knob.values.size(); ++i) {
       const auto& [value, words] = knob.values[i];
       const bool end = i == 0 || i + 1 == knob.values.size();
       (end ? settings : between).push_back({knob.name, value, words, end ? SweepPart::ends : SweepPart::between});
     }
   settings.insert(settings.end(), between.begin(), between.end());
-  const std::vector<ChartSetting> crossed = crossed_set(traits);
+  const std::vector<ChartSetting> crossed = crossed_set(traits, reference_grid);
   settings.insert(settings.end(), crossed.begin(), crossed.end());
   return settings;
 }

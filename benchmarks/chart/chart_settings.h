@@ -58,8 +58,9 @@ SceneTraits scene_traits(const Scene& scene);
 
 /// All settings, in the order in which they are to be measured: the defaults, what the user adds, the ends of each
 /// knob, the values between, a crossed set that covers the space evenly from its first members on. Each knob from cheap
-/// to dear.
-std::vector<ChartSetting> sweep_of(const SceneTraits& traits, const std::vector<Words>& added);
+/// to dear. Grids of `reference_grid` and one more samples an edge are left out: a picture with the reference's own
+/// samples would be nearer to it than to the truth.
+std::vector<ChartSetting> sweep_of(const SceneTraits& traits, const std::vector<Words>& added, int reference_grid);
 
 /// Flags of the reference: limit normals, finest facets; depth, cutoff and samples are chart_reference.h's to say.
 Words reference_surface_flags(const SceneTraits& traits, double tolerance);

@@ -1,0 +1,43 @@
+// Which settings a chart measures.
+#include "benchmarks/chart/chart_settings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+namespace raytree::benchmarks {
+namespace {
+
+bool names_grid(const ChartSetting& setting, int grid) {
+  const std::string word = "grid:" + std::to_string(grid);
+  return std::find(setting.flags.begin(), setting.flags.end(), word) != setting.flags.end();
+}
+
+TEST(ChartSettings, LeaveOutTheReferencesOwnSamples) {
+  SceneTraits traits;
+  traits.branches = true;
+  for (int reference = 3; reference <= 8; ++reference) {
+    std::set<int> grids;
+    for (const ChartSetting& setting : sweep_of(traits, {}, reference))
+      for (int grid = 2; grid <= 12; ++grid)
+        if (names_grid(setting, grid)) grids.insert(grid);
+    EXPECT_EQ(grids.count(reference), 0u) << reference;
+    EXPECT_EQ(grids.count(reference + 1), 0u) << reference;
+    EXPECT_GE(grids.size(), 4u) << reference;
+  }
+}
+
+TEST(ChartSettings, BeginWithTheScenesOwnThenWhatIsAddedAndTheEndsOfKnobs) {
+  const std::vector<ChartSetting> sweep = sweep_of({}, {{"--depth", "4"}}, 3);
+  EXPECT_EQ(sweep.front().part, SweepPart::defaults);
+  EXPECT_TRUE(std::is_sorted(sweep.begin(), sweep.end(), [](const ChartSetting& a, const ChartSetting& b) {
+    return (a.part == SweepPart::crossed) < (b.part == SweepPart::crossed);
+  })) << "crossed settings come last";
+  EXPECT_EQ(std::count_if(sweep.begin(), sweep.end(),
+                          [](const ChartSetting& setting) { return setting.part == SweepPart::added; }),
+            1);
+}
+
+}  // namespace
+}  // namespace raytree::benchmarks
