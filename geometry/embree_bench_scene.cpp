@@ -15,7 +15,7 @@ namespace {
 
 /// Rays per look at the clock: their packets stay in the first-level cache, and a look (some 25 ns) is under 1 % of
 /// what tracing them takes.
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kBlockOfRays = 256;
 
 /// Size of the shapes that keep company, as a share of the scene's.
 constexpr float kCompanySize = 0x1p-12f;
@@ -26,7 +26,7 @@ constexpr float kFarAway = 1e18f;
 /// Room for one block's packets.
 template <int Width>
 struct BenchPackets {
-  static constexpr std::size_t kPackets = kBlock / Width;
+  static constexpr std::size_t kPackets = kBlockOfRays / Width;
   alignas(64) int valid[kPackets][Width];
   alignas(64) typename embree::PacketTypes<Width>::RayHit ray_hits[kPackets];
   alignas(64) typename embree::PacketTypes<Width>::Ray rays[kPackets];
@@ -71,7 +71,7 @@ double intersect_block(RTCScene scene, const RayBatch& rays, std::size_t first, 
 template <>
 double intersect_block<1>(RTCScene scene, const RayBatch& rays, std::size_t first, std::size_t size, bool coherent,
                           HitBatch& hits) {
-  alignas(64) thread_local RTCRayHit work[kBlock];
+  alignas(64) thread_local RTCRayHit work[kBlockOfRays];
   for (std::size_t i = 0; i < size; ++i)
     work[i] = embree::single_ray_hit(rays.origin(first + i), rays.direction(first + i), rays.max_distance[first + i]);
   embree::Query query(coherent);
@@ -102,7 +102,7 @@ double occluded_block(RTCScene scene, const RayBatch& rays, std::size_t first, s
 template <>
 double occluded_block<1>(RTCScene scene, const RayBatch& rays, std::size_t first, std::size_t size, bool coherent,
                          std::uint8_t* occluded) {
-  alignas(64) thread_local RTCRay work[kBlock];
+  alignas(64) thread_local RTCRay work[kBlockOfRays];
   for (std::size_t i = 0; i < size; ++i)
     work[i] = embree::single_ray(rays.origin(first + i), rays.direction(first + i), rays.max_distance[first + i]);
   embree::Query query(coherent);
@@ -276,8 +276,9 @@ double EmbreeBenchScene::intersect(const RayBatch& given, BenchCall call, HitBat
                    : call.width == 8 ? intersect_block<8>
                                      : intersect_block<16>;
   double seconds = 0;
-  for (std::size_t first = 0; first < rays.size; first += kBlock)
-    seconds += run(tracer_->state_->scene.get(), rays, first, std::min(kBlock, rays.size - first), call.coherent, hits);
+  for (std::size_t first = 0; first < rays.size; first += kBlockOfRays)
+    seconds +=
+        run(tracer_->state_->scene.get(), rays, first, std::min(kBlockOfRays, rays.size - first), call.coherent, hits);
   return seconds;
 }
 
@@ -288,9 +289,9 @@ double EmbreeBenchScene::occluded(const RayBatch& given, BenchCall call, std::ui
                    : call.width == 8 ? occluded_block<8>
                                      : occluded_block<16>;
   double seconds = 0;
-  for (std::size_t first = 0; first < rays.size; first += kBlock)
-    seconds +=
-        run(tracer_->state_->scene.get(), rays, first, std::min(kBlock, rays.size - first), call.coherent, occluded);
+  for (std::size_t first = 0; first < rays.size; first += kBlockOfRays)
+    seconds += run(tracer_->state_->scene.get(), rays, first, std::min(kBlockOfRays, rays.size - first), call.coherent,
+                   occluded);
   return seconds;
 }
 

@@ -9,7 +9,7 @@ namespace {
 /// Triangles behind one that are looked at for its partner: the halves of a quad stand side by side in most files.
 constexpr std::size_t kPartnerWindow = 4;
 
-constexpr std::uint32_t kNoSide = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoNeighbor = std::numeric_limits<std::uint32_t>::max();
 
 /// Which edge of triangle `a` triangle `b` has too, the other way round; -1: none.
 int shared_edge(const std::uint32_t* a, const std::uint32_t* b) {
@@ -27,7 +27,7 @@ struct Placed {
 /// Who lies behind each side of each quad. Side k goes from corner k to k + 1.
 class Neighbors {
  public:
-  explicit Neighbors(const QuadList& quads) : across_(quads.corners.size(), kNoSide) {
+  explicit Neighbors(const QuadList& quads) : across_(quads.corners.size(), kNoNeighbor) {
     struct Side {
       std::uint64_t edge;
       std::uint32_t side;
@@ -54,13 +54,13 @@ class Neighbors {
   /// The quad across side `side` of a placed one, placed so that it meets that with its side `meeting`; false: none.
   bool across(const Placed& from, std::uint32_t side, std::uint32_t meeting, Placed& to) const {
     const std::uint32_t found = across_[from.quad * 4 + (side + from.turn) % 4];
-    if (found == kNoSide) return false;
+    if (found == kNoNeighbor) return false;
     to = {found / 4, (found % 4 + 4 - meeting) % 4};
     return true;
   }
 
  private:
-  std::vector<std::uint32_t> across_;  ///< [quad][4] side of the neighbor, or kNoSide
+  std::vector<std::uint32_t> across_;  ///< [quad][4] side of the neighbor, or kNoNeighbor
 };
 
 }  // namespace
