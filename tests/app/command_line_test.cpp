@@ -81,8 +81,9 @@ TEST(CommandLineHelp, VersionFromTheProgramAndFromEachCommand) {
 TEST(CommandLineErrors, UnknownWordsAreNamedWithWhatWouldBeRight) {
   TemporaryFolder folder;
   const std::string png = folder.path("a.png");
-  expect_bad_input({"rendr", kScene}, {"\"rendr\"", "did you mean render?",
-                                       "info, sheet, convert, scenes, schema, bench, chart, validate, stability, ray, ocio"});
+  expect_bad_input({"rendr", kScene},
+                   {"\"rendr\"", "did you mean render?",
+                    "info, sheet, convert, scenes, schema, bench, chart, validate, stability, ray, ocio"});
   expect_bad_input({"--verison"}, {"--verison", "--version"});
   expect_bad_input(with(small_render(png), {"--thread", "2"}), {"unknown flag --thread;", "did you mean --threads?"});
   expect_bad_input(with(small_render(png), {"--exposur=1"}), {"unknown flag --exposur;", "--exposure"});
