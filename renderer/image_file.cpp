@@ -61,7 +61,6 @@ class Module {
     if (loader_.joinable() || tried_) return;
     try {
       loader_ = std::thread([this] { load_once(); });
-      begun_here.modules.push_back(this);
     } catch (const std::system_error&) {
       // No thread to be had: the first use loads.
     }
@@ -84,17 +83,6 @@ class Module {
   }
 
  private:
-  /// A thread that ends, or ends the program, waits for what it has begun to load. Of a program's end this comes before
-  /// everything else: libraries register the ends of their own static objects while they are loaded, and those would
-  /// run first and beneath the loading.
-  struct BegunHere {
-    std::vector<Module*> modules;
-    ~BegunHere() {
-      for (Module* module : modules) module->wait();
-    }
-  };
-  static thread_local BegunHere begun_here;
-
   void load_once() {
     std::call_once(once_, [this] { load(); });
     const std::lock_guard lock(mutex_);
@@ -129,8 +117,6 @@ class Module {
   const RaytreeImageIo* table_ = nullptr;
   std::string problem_;
 };
-
-thread_local Module::BegunHere Module::begun_here;
 
 /// Of all formats without a module of their own, and of reading.
 Module& image_module() {
@@ -224,6 +210,10 @@ ImageFormat image_format(const std::string& path) {
 bool holds_alpha(ImageFormat format) { return format != ImageFormat::jpeg; }
 
 void preload_image_io(ImageFormat format) { encoding_module(format).preload(); }
+
+void finish_preloads() {
+  for (Module* module : {&image_module(), &exr_module(), &png_module()}) module->wait();
+}
 
 std::vector<std::byte> encode_image(const Image& image, ImageFormat format, EncodeReport* report) {
   std::vector<RaytreePlane> planes;

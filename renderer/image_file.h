@@ -38,12 +38,15 @@ ImageFormat image_format(const std::string& path);
 /// Whether files of this format can hold an alpha channel.
 bool holds_alpha(ImageFormat format);
 
-/// Begins loading the module that encodes `format` in a background thread; returns at once. Later calls wait for it,
-/// and so does the end of the calling thread, or of the program by it. Modules lie in the folder $RAYTREE_MODULES if
-/// that is set; else beside the program, in
-/// ../lib, ../lib/raytree or the installation's library folder relative to it. That one is missing is reported by the
-/// call that needs it, as an Error (failure) that names the paths tried.
+/// Begins loading the module that encodes `format` in a background thread; returns at once. Later calls wait for it. A
+/// program that may end before calls finish_preloads() first. Modules lie in the folder $RAYTREE_MODULES if that is
+/// set; else beside the program, in ../lib, ../lib/raytree or the installation's library folder relative to it. That
+/// one is missing is reported by the call that needs it, as an Error (failure) that names the paths tried.
 void preload_image_io(ImageFormat format);
+
+/// Waits for what preload_image_io() has begun. Libraries register the ends of their static objects while they are
+/// loaded: exit() in between would run those first, beneath the loading. (_exit() runs none, and needs no waiting.)
+void finish_preloads();
 
 struct EncodeReport {
   std::int64_t half_clamped = 0;  ///< finite values beyond 65504 that became 65504 in planes of type half

@@ -359,6 +359,7 @@ TEST(PreloadChild, DISABLED_Exits) {
   preload_image_io(ImageFormat::png);
   preload_image_io(ImageFormat::exr);
   std::this_thread::sleep_for(std::chrono::milliseconds(std::atoi(pause)));
+  finish_preloads();
   std::exit(0);
 }
 
