@@ -21,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "benchmarks/scratch_folder.h"
 #include "geometry/mesh_file.h"
 #include "geometry/stopwatch.h"
 #include "geometry/vertex_normals.h"
@@ -133,22 +134,6 @@ struct Row {
   double least_speed;  // MB/s, 0: no bound
 };
 
-/// A folder that vanishes with its files.
-struct TemporaryFolder {
-  std::filesystem::path path;
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "raytree-loading-XXXXXX").string();
-    if (!::mkdtemp(pattern.data())) throw Error(ErrorKind::failure, {pattern, 0, {}}, "cannot make a folder");
-    path = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
 /// Samples as one object of the JSON array that `./run measure loading` reads.
 void print_json(bool first, const std::string& what, const char* unit, const std::vector<double>& samples,
                 const char* bound_name, double bound) {
@@ -165,7 +150,7 @@ int run(int repetitions, bool json) {
                       {"PLY ascii", "ascii.ply", Kind::ply_ascii, 0},
                       {"OBJ", "waves.obj", Kind::obj, 100}};
   const PolygonMesh mesh = waves();
-  const TemporaryFolder folder;
+  const benchmarks::ScratchFolder folder;
   if (!json) {
     std::printf("%zu triangles, %u hardware threads, best of %d\n", mesh.face_count(),
                 std::thread::hardware_concurrency(), repetitions);
@@ -173,7 +158,7 @@ int run(int repetitions, bool json) {
   }
   bool short_of = false;
   for (const Row& row : rows) {
-    const std::string path = (folder.path / row.file).string();
+    const std::string path = (folder.path() / row.file).string();
     {
       const std::string bytes = file_bytes(mesh, row.kind);
       std::ofstream(path, std::ios::binary) << bytes;

@@ -14,6 +14,7 @@
 
 #include "benchmarks/child_process.h"
 #include "benchmarks/rows.h"
+#include "benchmarks/scratch_folder.h"
 #include "geometry/error.h"
 #include "renderer/machine.h"
 
@@ -36,28 +37,6 @@ std::string help() {
          "row.\n";
 }
 
-/// A folder that goes with the program's end.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = std::filesystem::temp_directory_path() / "raytree-measure-XXXXXX";
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw Error(ErrorKind::failure, {pattern, 0, ""}, "no folder for files in passing");
-    path_ = pattern;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-/// A row that cannot be measured falls short: a missing program must not read as a bound that holds.
 /// What the figures were measured on: name and value, in the order of printing.
 std::vector<std::pair<std::string, std::string>> machine_lines() {
   const Machine here = machine();
@@ -65,6 +44,7 @@ std::vector<std::pair<std::string, std::string>> machine_lines() {
           {"build", here.build_type},    {"instruction set", here.instruction_set},        {"tracer", here.tracer}};
 }
 
+/// A row that cannot be measured falls short: a missing program must not read as a bound that holds.
 std::vector<Figure> measured(const Row& row, const MeasureContext& context) {
   try {
     return row.measure(context);

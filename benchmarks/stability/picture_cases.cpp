@@ -1,19 +1,17 @@
 // Rows 59 to 65: numbers on their way to a file and to a display, and pictures that must not depend on who made them.
 #include <Imath/half.h>
-#include <stdlib.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <random>
 #include <set>
-#include <system_error>
 
 #include "benchmarks/samples/rough_mirror.h"
+#include "benchmarks/scratch_folder.h"
 #include "benchmarks/stability/case_tools.h"
 #include "renderer/film_image.h"
 #include "renderer/float_mode.h"
@@ -32,16 +30,8 @@ constexpr float kLargestHalf = 65504;
 
 /// The film's color as it comes back from an EXR file.
 DecodedImage written_and_read(const Film& film, bool half, EncodeReport& report) {
-  std::string folder = (std::filesystem::temp_directory_path() / "raytree-stability-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) throw Error(ErrorKind::failure, {folder, 0, {}}, "cannot make a folder");
-  struct Removal {
-    const std::string& folder;
-    ~Removal() {
-      std::error_code ignored;
-      std::filesystem::remove_all(folder, ignored);
-    }
-  } const removal{folder};
-  const std::string file = folder + "/values.exr";
+  const ScratchFolder folder;
+  const std::string file = folder.path() / "values.exr";
   const auto bytes = encode_image(scene_linear_image(film, half, {}), ImageFormat::exr, &report);
   write_file_atomically(file, bytes.data(), bytes.size());
   return read_image_file(file);
