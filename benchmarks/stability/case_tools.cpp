@@ -23,12 +23,16 @@ RenderResult rendered_for(const StabilityRun& run, SceneDescription description,
   return render(scene, options);
 }
 
-StabilityPicture stability_picture(std::string caption, const Film& film) {
+DisplayOptions stability_display() {
   DisplayOptions options;
   options.ocio_config = "builtin";
   options.display = "sRGB";
   options.view = "Standard";
-  return {std::move(caption), display_image(film, DisplayTransform(options))};
+  return options;
+}
+
+StabilityPicture stability_picture(std::string caption, const Film& film) {
+  return {std::move(caption), display_image(film, DisplayTransform(stability_display()))};
 }
 
 void add_picture(const StabilityRun& run, StabilityResult& result, std::string caption, SceneDescription description) {

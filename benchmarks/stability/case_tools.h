@@ -15,7 +15,8 @@ Scene prepared_for(const StabilityRun& run, SceneDescription description, const 
 RenderResult rendered_for(const StabilityRun& run, SceneDescription description,
                           const ChannelSet& channels = {ChannelGroup::color});
 
-/// As an sRGB display shows it.
+/// How pictures of the suite are shown, whatever $OCIO says.
+DisplayOptions stability_display();
 StabilityPicture stability_picture(std::string caption, const Film& film);
 
 /// Adds a picture of the scene, where the run asks for pictures.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/facet_cases.h"
 #include "benchmarks/stability/faceted_scenes.h"
 #include "geometry/angle.h"
@@ -133,7 +134,7 @@ StabilityResult canceling_normals(const StabilityRun& run) {
         RenderOptions options;
         options.channels = {ChannelGroup::color, ChannelGroup::normal};
         options.stop = run.stop;
-        const RenderResult rendered = render(prepared_scene(std::move(scene), run), options);
+        const RenderResult rendered = render(prepared_for(run, std::move(scene)), options);
         not_finite += static_cast<std::size_t>(rendered.statistics.not_finite_samples);
         for (const ChannelGroup group : {ChannelGroup::color, ChannelGroup::normal})
           for (int c = 0; c < 3; ++c)

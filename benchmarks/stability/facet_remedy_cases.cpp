@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/facet_cases.h"
 #include "benchmarks/stability/faceted_scenes.h"
 #include "geometry/angle.h"
@@ -30,7 +31,7 @@ SceneDescription mirror_sphere(int sides, FacetReflections reflections, ShadingM
 
 MirroredRays mirrored_rays(int sides, FacetReflections reflections, ShadingMethod method, const StabilityRun& run) {
   const int size = run.effort < 0.5 ? 200 : 400;
-  const Scene scene = prepared_scene(mirror_sphere(sides, reflections, method, size), run);
+  const Scene scene = prepared_for(run, mirror_sphere(sides, reflections, method, size));
   FacetShading facets(scene);
   const auto width = static_cast<std::size_t>(size);
   RayBatch rays(width);

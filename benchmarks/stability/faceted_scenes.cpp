@@ -4,17 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "benchmarks/samples/scenes.h"
+#include "benchmarks/stability/case_tools.h"
 #include "geometry/angle.h"
-#include "renderer/render.h"
 
 namespace raytree::benchmarks::facets {
 
 ShapeDescription painted(ShapeKind kind, const std::string& name) {
-  ShapeDescription shape;
-  shape.name = name;
-  shape.material = "paint";
-  shape.kind = std::move(kind);
-  return shape;
+  return samples::shape(std::move(kind), "paint", name);
 }
 
 ShapeDescription painted_mesh(std::shared_ptr<PolygonMesh> mesh, NormalSource normals) {
@@ -64,23 +61,9 @@ std::shared_ptr<PolygonMesh> flat_grid(int cells, double spacing) {
 }
 
 SceneDescription headlit_scene(ShapeDescription shape, int width, int height, double window) {
-  SceneDescription scene;
-  scene.name = "stability";
+  SceneDescription scene = samples::dark_scene(width, samples::front_camera(window));
   scene.image = {width, height};
-  CameraDescription camera;
-  camera.projection = CameraDescription::Projection::orthographic;
-  camera.position = {0, 0, 10};
-  camera.target = {0, 0, 0};
-  camera.height = window;
-  scene.cameras = {camera};
-  scene.ambient = Rgb(0);
-  scene.background = ConstantBackground{Rgb(0)};
-  scene.render.cutoff = 0;
-  scene.render.antialias = {Antialiasing::Method::none, 1};
-  MaterialDescription paint;
-  paint.name = "paint";
-  paint.diffuse = Rgb(1);
-  scene.materials = {paint};
+  scene.materials = {samples::material("paint", Rgb(1))};
   scene.lights = {sunlight({0, 0, -1})};
   scene.shapes = {std::move(shape)};
   return scene;
@@ -95,18 +78,8 @@ SceneDescription highlit_scene(ShapeDescription shape, int width, int height, do
   return scene;
 }
 
-Scene prepared_scene(SceneDescription scene, const StabilityRun& run) {
-  PrepareOptions options;
-  options.stop = run.stop;
-  Warnings odd;  // what is odd here is so on purpose
-  return prepare(std::move(scene), options, odd);
-}
-
 Film film_of(SceneDescription scene, const StabilityRun& run, const ChannelSet& channels) {
-  RenderOptions options;
-  options.channels = channels;
-  options.stop = run.stop;
-  return render(prepared_scene(std::move(scene), run), options).film;
+  return rendered_for(run, std::move(scene), channels).film;
 }
 
 std::vector<float> green_of(SceneDescription scene, const StabilityRun& run) {
@@ -127,20 +100,15 @@ void add_picture(StabilityResult& result, const StabilityRun& run, std::string c
   if (!run.pictures) return;
   scene.image = {width, height};
   scene.render.antialias = {Antialiasing::Method::grid, 2};
-  DisplayOptions options;
-  options.ocio_config = "builtin";
-  result.pictures.push_back(
-      {std::move(caption), display_image(film_of(std::move(scene), run), DisplayTransform(options))});
+  benchmarks::add_picture(run, result, std::move(caption), std::move(scene));
 }
 
 void add_gray_picture(StabilityResult& result, const StabilityRun& run, std::string caption,
                       const std::vector<float>& values, int width, int height) {
   if (!run.pictures) return;
-  DisplayOptions options;
-  options.ocio_config = "builtin";
   std::vector<float> rgb;
   for (const float value : values) rgb.insert(rgb.end(), {value, value, value});
-  const DisplayTransform transform(options);
+  const DisplayTransform transform(stability_display());
   transform.apply(rgb.data(), static_cast<std::int64_t>(values.size()));
   DisplayImage image;
   image.width = width, image.height = height;

@@ -34,7 +34,6 @@ SceneDescription headlit_scene(ShapeDescription shape, int width, int height, do
 /// The same with a white highlight (N.H)^n alone, which is (N.z)^n here.
 SceneDescription highlit_scene(ShapeDescription shape, int width, int height, double window, double exponent);
 
-Scene prepared_scene(SceneDescription scene, const StabilityRun& run);
 Film film_of(SceneDescription scene, const StabilityRun& run, const ChannelSet& channels = {ChannelGroup::color});
 /// Green of all pixels, row by row.
 std::vector<float> green_of(SceneDescription scene, const StabilityRun& run);
