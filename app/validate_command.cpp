@@ -45,14 +45,18 @@ Words with_json_value(const Words& words) {
   return result;
 }
 
+std::vector<std::string> fault_names() {
+  std::vector<std::string> names;
+  for (const benchmarks::PlantedFault& fault : benchmarks::planted_faults()) names.emplace_back(fault.name);
+  return names;
+}
+
 /// Throws Error (bad_input) unless it is the name of one, or empty.
 const benchmarks::PlantedFault* fault_named(const std::string& name) {
   if (name.empty()) return nullptr;
-  std::vector<std::string> names;
-  for (const benchmarks::PlantedFault& fault : benchmarks::planted_faults()) {
+  for (const benchmarks::PlantedFault& fault : benchmarks::planted_faults())
     if (fault.name == name) return &fault;
-    names.emplace_back(fault.name);
-  }
+  const std::vector<std::string> names = fault_names();
   throw usage_error(
       fmt::format("--plant: \"{}\" is none of: {}{}", name, fmt::join(names, ", "), did_you_mean(name, names)));
 }
@@ -73,7 +77,11 @@ std::optional<ValidateOptions> parse_validate_options(const Words& words) {
   command.add_option("--rays", pixels, "Compare the trees of about so many eye rays; default: 10000")->type_name("N");
   command.add_flag("--full", full, "Compare the trees of all pixels");
   add_truth_flag(command, options.truth);
-  command.add_option("--plant", fault, "Plant a fault in the fast tracer, to see that it is found")->type_name("FAULT");
+  command
+      .add_option(
+          "--plant", fault,
+          fmt::format("Plant a fault in the fast tracer, to see that it is found: {}", fmt::join(fault_names(), ", ")))
+      ->type_name("FAULT");
   command.add_option("-o,--output", options.picture, "Picture with the disagreements marked (.png)")->type_name("FILE");
   command.add_flag("--table", options.table, "Print a table of Markdown, a line for each scene");
   command.add_option("--json", options.json, "Print JSON; with a name, write it to that file beside the text")
