@@ -118,8 +118,8 @@ std::string charts_section(const ChartData& data) {
       "<p class=\"quiet\">Each dot is a setting: left is quicker, lower is more accurate. On the blue line lie those "
       "that no other "
       "beats in both; the rest is grey. The ringed dot is the scene as it is; dotted lines follow one knob from cheap "
-      "to "
-      "dear. Bars: quartiles of the time, and what the reference's own error leaves open. Click a dot for its command "
+      "to dear. Bars: quartiles of the time, and what the reference's own error leaves open. Click a dot for its "
+      "command "
       "and picture.</p>\n"
       "<div class=\"looked-at\"><div><h3 id=\"point-name\"></h3><pre id=\"command\"></pre>\n"
       "<button id=\"copy\">copy</button>\n<img id=\"picture\" alt=\"what it renders\"></div>\n<table><tbody "
@@ -176,10 +176,8 @@ std::string settings_table(const ChartData& data) {
   }
   return html +
          "</tbody></table></div>\n<p class=\"quiet\">Blue: on the front of RMSE. Distance: mean relative error of the "
-         "hit "
-         "distance; normal: mean error in degrees; both over the pixels that one surface fills. MB: arrays of shapes, "
-         "tracer "
-         "and film.</p></section>\n";
+         "hit distance; normal: mean error in degrees; both over the pixels that one surface fills. MB: arrays of "
+         "shapes, tracer and film.</p></section>\n";
 }
 
 std::string method_section(const ChartData& data) {

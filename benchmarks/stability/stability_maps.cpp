@@ -55,10 +55,8 @@ std::vector<std::string> texts_of(const std::vector<double>& values) {
 
 constexpr const char* kAgainstTruth =
     "A miss: the surface that the truth in double meets is not met, or is met over a hundredth of the size farther "
-    "away. "
-    "A false hit: one is met where the truth meets none, or nearer by as much. A self-hit: a ray that leaves a hit "
-    "meets "
-    "its triangle again.";
+    "away. A false hit: one is met where the truth meets none, or nearer by as much. A self-hit: a ray that leaves a "
+    "hit meets its triangle again.";
 
 StabilityMap scale_map(const StabilityRun& run) {
   const std::vector<double> sizes{1e-12, 1e-9, 1e-6, 1e-3, 1, 1e3, 1e6, 1e9, 1e12},
@@ -95,8 +93,7 @@ StabilityMap grazing_map(const StabilityRun& run) {
   map.columns = {"angle over the surface, degrees", texts_of(degrees)};
   map.promise =
       "Rays from no farther away than 6e4 sizes times the sine of their angle over the surface: no misses, no false "
-      "hits. "
-      "At any angle and distance: no self-hits.";
+      "hits. At any angle and distance: no self-hits.";
   fill_map(
       map, run,
       [&](std::size_t row, std::size_t column, std::size_t rays, std::uint64_t seed) {
@@ -123,8 +120,7 @@ StabilityMap slab_map(const StabilityRun& run) {
   map.columns = {"thickness, sizes", texts_of(thicknesses)};
   map.promise =
       "Sheets that lie apart by 3e-6 of their size and by 3e-6 of their distance from the scene's origin: no misses, "
-      "no "
-      "false hits. At any thickness: no self-hits.";
+      "no false hits. At any thickness: no self-hits.";
   fill_map(
       map, run,
       [&](std::size_t row, std::size_t column, std::size_t rays, std::uint64_t seed) {
@@ -144,8 +140,8 @@ StabilityMap critical_map(const StabilityRun& run) {
   map.title = "Near the critical angle";
   map.method =
       "Rays inside a medium at its border, half of them so far under the critical angle, half above it; the truth "
-      "knows "
-      "the ray and the triangle as they are. A miss: a ray that ought to pass is reflected totally. A false hit: the "
+      "knows the ray and the triangle as they are. A miss: a ray that ought to pass is reflected totally. A false hit: "
+      "the "
       "reverse. A self-hit: a ray that passed meets its triangle again.";
   map.rows = {"index of refraction", texts_of(indices)};
   map.columns = {"distance from the critical angle, radians", texts_of(distances)};
