@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "geometry/error.h"
 
 namespace raytree::benchmarks {
@@ -11,6 +13,9 @@ using Quality = EmbreeOptions::Quality;
 
 /// More primitives than that take the naive tracer longer to prepare than anybody waits for.
 constexpr double kMostNaivePrimitives = 2e6;
+
+/// Rays in the renderer's own packets, where the processor has them.
+constexpr int kRenderersWidth = 8;
 
 constexpr const char* kGeometryNames[kBenchGeometryCount] = {"triangles", "quads", "grids"};
 constexpr const char* kCompanyNames[] = {"", "-and-quad", "-and-quad-and-sphere"};
@@ -45,7 +50,8 @@ std::vector<BenchConfiguration> bench_configurations(const BenchSubject& subject
   list.push_back(bare(common, {1, false}));
   for (int width = 4; width <= subject.widest_call; width *= 2)
     for (const bool coherent : {false, true}) list.push_back(bare(common, {width, coherent}));
-  const BenchCall best{subject.widest_call, subject.coherent && subject.widest_call > 1};
+  // What is built otherwise is asked as the renderer asks.
+  const BenchCall best{std::min(subject.widest_call, kRenderersWidth), subject.coherent && subject.widest_call > 1};
   if (subject.threads > 1) {
     list.push_back(bare(common, best));
     list.back().threads = 1;

@@ -217,7 +217,8 @@ struct EmbreeBenchScene::Parts {
   }
 };
 
-EmbreeBenchScene::EmbreeBenchScene(const ShapeSet& shapes, const BenchSceneOptions& options) {
+EmbreeBenchScene::EmbreeBenchScene(const ShapeSet& shapes, const BenchSceneOptions& options)
+    : compact_(options.compact) {
   auto parts = std::make_unique<Parts>();
   parts->prepare(shapes, options.geometry);
   for (const BoundedShapes& group : shapes.groups) parts->prepare(group, options.geometry);
@@ -288,10 +289,11 @@ double EmbreeBenchScene::occluded(const RayBatch& given, BenchCall call, std::ui
                    : call.width == 4 ? occluded_block<4>
                    : call.width == 8 ? occluded_block<8>
                                      : occluded_block<16>;
+  const bool comes_back = call.width < 16 || !compact_ || embree::kFollowsWideOcclusionInCompactScenes;
   double seconds = 0;
   for (std::size_t first = 0; first < rays.size; first += kBlockOfRays)
-    seconds += run(tracer_->state_->scene.get(), rays, first, std::min(kBlockOfRays, rays.size - first), call.coherent,
-                   occluded);
+    seconds += run(tracer_->state_->scene.get(), rays, first, std::min(kBlockOfRays, rays.size - first),
+                   call.coherent && comes_back, occluded);
   return seconds;
 }
 
