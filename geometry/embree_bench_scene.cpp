@@ -167,14 +167,6 @@ struct EmbreeBenchScene::Parts {
     }
   }
 
-  void set_quads(RTCGeometry geometry, const TriangleMesh& mesh) const {
-    const QuadList& list = quads.at(&mesh);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
-                               sizeof(Vec3f), mesh.positions.size());
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, list.corners.data(), 0,
-                               4 * sizeof(std::uint32_t), list.size());
-  }
-
   void set_grids(RTCGeometry geometry, const TriangleMesh& mesh) const {
     const GridList& list = grids.at(&mesh);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, list.points.data(), 0,
@@ -228,7 +220,9 @@ EmbreeBenchScene::EmbreeBenchScene(const ShapeSet& shapes, const BenchSceneOptio
   const Parts* kept = parts.get();
   if (options.geometry == BenchGeometry::quads) {
     scene_parts.mesh_type = RTC_GEOMETRY_TYPE_QUAD;
-    scene_parts.set_mesh = [kept](RTCGeometry geometry, const TriangleMesh& mesh) { kept->set_quads(geometry, mesh); };
+    scene_parts.set_mesh = [kept](RTCGeometry geometry, const TriangleMesh& mesh) {
+      embree::share_quads(geometry, mesh, kept->quads.at(&mesh));
+    };
   } else if (options.geometry == BenchGeometry::grids) {
     scene_parts.mesh_type = RTC_GEOMETRY_TYPE_GRID;
     scene_parts.set_mesh = [kept](RTCGeometry geometry, const TriangleMesh& mesh) { kept->set_grids(geometry, mesh); };

@@ -161,9 +161,18 @@ RTCBuildQuality embree_quality(EmbreeOptions::Quality quality) {
   return quality == EmbreeOptions::Quality::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
 }
 
-/// A scene of these shapes, not committed. Embree writes to none of the buffers that it shares.
+std::vector<QuadList> quads_of(const BoundedShapes& shapes) {
+  std::vector<QuadList> lists;
+  lists.reserve(shapes.meshes.size());
+  for (const MeshEntry& entry : shapes.meshes) lists.push_back(joined_quads(entry.mesh.corners));
+  return lists;
+}
+
+/// A scene of these shapes, not committed. Embree writes to none of the buffers that it shares. quads: a list a mesh;
+/// null: meshes become what `parts` says.
 embree::SceneHandle scene_of(RTCDevice device, const BoundedShapes& shapes, const EmbreeOptions& options,
-                             const FewShapes& left_out, const embree::SceneParts& parts) {
+                             const FewShapes& left_out, const embree::SceneParts& parts,
+                             const std::vector<QuadList>* quads) {
   embree::SceneHandle handle(rtcNewScene(device));
   RTCScene scene = handle.get();
   int flags = RTC_SCENE_FLAG_NONE;
@@ -201,7 +210,12 @@ embree::SceneHandle scene_of(RTCDevice device, const BoundedShapes& shapes, cons
   for (std::size_t i = 0; i < shapes.meshes.size(); ++i) {
     const TriangleMesh& mesh = shapes.meshes[i].mesh;
     if (mesh.corners.empty()) continue;
-    attach(parts.mesh_type, kFirstMeshGeometry + static_cast<GeometryId>(i), [&](RTCGeometry geometry) {
+    const RTCGeometryType type = quads != nullptr ? RTC_GEOMETRY_TYPE_QUAD : parts.mesh_type;
+    attach(type, kFirstMeshGeometry + static_cast<GeometryId>(i), [&](RTCGeometry geometry) {
+      if (quads != nullptr) {
+        embree::share_quads(geometry, mesh, (*quads)[i]);
+        return;
+      }
       if (parts.set_mesh) {
         parts.set_mesh(geometry, mesh);
         return;
@@ -238,6 +252,13 @@ void commit(RTCScene scene, const std::atomic<bool>* stop) {
 }
 
 }  // namespace
+
+void embree::share_quads(RTCGeometry geometry, const TriangleMesh& mesh, const QuadList& quads) {
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
+                             sizeof(Vec3f), mesh.positions.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, quads.corners.data(), 0,
+                             4 * sizeof(std::uint32_t), quads.size());
+}
 
 void EmbreeIntersector::throw_if_failed(State& state, const std::atomic<bool>* stop) {
   if (stop != nullptr && stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
@@ -280,18 +301,27 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
       &state);
   state.wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
 
+  const auto quads = [&](std::size_t at) { return state.quads.empty() ? nullptr : &state.quads[at]; };
+  if (options.primitives == EmbreeOptions::Primitives::quads) {
+    state.quads.resize(1 + shapes.groups.size());
+    state.quads[0] = quads_of(shapes);
+    for (std::size_t i = 0; i < shapes.groups.size(); ++i) state.quads[1 + i] = quads_of(shapes.groups[i]);
+    for (const std::vector<QuadList>& lists : state.quads)
+      for (const QuadList& list : lists) state.quad_bytes += list.memory_bytes();
+  }
+
   // Instances refer to groups that are built; what nothing uses is not.
   std::vector<bool> used(shapes.groups.size(), false);
   for (const Instance& instance : shapes.instances) used[instance.group] = true;
   state.groups.resize(shapes.groups.size());
   for (std::size_t i = 0; i < shapes.groups.size(); ++i) {
     if (!used[i]) continue;
-    state.groups[i] = scene_of(device, shapes.groups[i], options, FewShapes(), parts);
+    state.groups[i] = scene_of(device, shapes.groups[i], options, FewShapes(), parts, quads(1 + i));
     commit(state.groups[i].get(), options.stop);
     throw_if_failed(state, options.stop);
   }
 
-  state.scene = scene_of(device, shapes, options, state.few, parts);
+  state.scene = scene_of(device, shapes, options, state.few, parts, quads(0));
   state.instanced = !shapes.instances.empty();
   state.together = shapes.instances.size() < options.many_instances;
   state.first_instance = kFirstMeshGeometry + static_cast<GeometryId>(shapes.meshes.size());
@@ -314,6 +344,18 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
 
 EmbreeIntersector::~EmbreeIntersector() = default;
 
+void EmbreeIntersector::name_triangles(std::size_t count, HitBatch& hits) const noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    const GeometryId geometry = hits.geometry[i];
+    if (geometry < kFirstMeshGeometry || geometry == kNoGeometry) continue;
+    const InstanceId instance = hits.instance[i];
+    const std::size_t space = instance == kNoInstance ? 0 : 1 + state_->shapes->instances[instance].group;
+    const TrianglePoint point =
+        triangle_point(state_->quads[space][geometry - kFirstMeshGeometry], hits.primitive[i], hits.u[i], hits.v[i]);
+    hits.primitive[i] = point.triangle, hits.u[i] = point.u, hits.v[i] = point.v;
+  }
+}
+
 void EmbreeIntersector::nearest_bounded(const RayBatch& rays, Coherence coherence, const float* max_distance,
                                         HitBatch& hits) const noexcept {
   if (state_->instanced)
@@ -323,6 +365,7 @@ void EmbreeIntersector::nearest_bounded(const RayBatch& rays, Coherence coherenc
   const auto run = state_->wide ? (state_->instanced ? intersect_packets<8, true> : intersect_packets<8, false>)
                                 : (state_->instanced ? intersect_packets<4, true> : intersect_packets<4, false>);
   run(state_->scene.get(), state_->bounds, rays, state_->told(coherence), max_distance, state_->first_instance, hits);
+  if (!state_->quads.empty()) name_triangles(rays.size, hits);
 }
 
 void EmbreeIntersector::intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept {
@@ -359,6 +402,12 @@ Hit EmbreeIntersector::intersect_one(const Vec3f& origin, const Vec3f& direction
   if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID)
     nearest = {ray.hit.geomID, ray.hit.primID, ray.hit.u,
                ray.hit.v,      ray.ray.tfar,   instance_of(ray.hit.instID[0], state_->first_instance)};
+  if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID && !state_->quads.empty()) {
+    thread_local HitBatch one(1);
+    one.set(0, nearest);
+    name_triangles(1, one);
+    nearest = one[0];
+  }
   return nearest;
 }
 
@@ -374,10 +423,10 @@ bool EmbreeIntersector::occluded_one(const Vec3f& origin, const Vec3f& direction
 bool EmbreeIntersector::follows_packets_together() const noexcept { return state_->together; }
 
 std::size_t EmbreeIntersector::memory_bytes() const noexcept {
-  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->memory.load()));
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->memory.load())) + state_->quad_bytes;
 }
 std::size_t EmbreeIntersector::peak_memory_bytes() const noexcept {
-  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->peak_memory.load()));
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->peak_memory.load())) + state_->quad_bytes;
 }
 
 std::string EmbreeIntersector::version() { return "Embree " RTC_VERSION_STRING; }

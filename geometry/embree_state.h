@@ -10,6 +10,7 @@
 #include "geometry/embree_api.h"
 #include "geometry/embree_intersector.h"
 #include "geometry/few_shapes.h"
+#include "geometry/quad_pairs.h"
 
 namespace raytree {
 
@@ -34,11 +35,17 @@ struct SceneParts {
   std::function<void(RTCDevice, RTCScene, GeometryId)> add;
 };
 
+/// Has a quad geometry share a mesh's positions and the list of its quads.
+void share_quads(RTCGeometry geometry, const TriangleMesh& mesh, const QuadList& quads);
+
 }  // namespace embree
 
 struct EmbreeIntersector::State {
   const ShapeSet* shapes = nullptr;
   FewShapes few;  ///< that Embree does not hold
+  /// The quads of the scene's meshes, then of each group's, where meshes are handed over as quads; else empty.
+  std::vector<std::vector<QuadList>> quads;
+  std::size_t quad_bytes = 0;
   std::atomic<std::ptrdiff_t> memory{0};
   std::atomic<std::ptrdiff_t> peak_memory{0};
   std::mutex error_mutex;

@@ -6,18 +6,7 @@
 namespace raytree {
 namespace {
 
-/// Triangles behind one that are looked at for its partner: the halves of a quad stand side by side in most files.
-constexpr std::size_t kPartnerWindow = 4;
-
 constexpr std::uint32_t kNoNeighbor = std::numeric_limits<std::uint32_t>::max();
-
-/// Which edge of triangle `a` triangle `b` has too, the other way round; -1: none.
-int shared_edge(const std::uint32_t* a, const std::uint32_t* b) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      if (a[i] == b[(j + 1) % 3] && a[(i + 1) % 3] == b[j]) return i;
-  return -1;
-}
 
 /// A quad as it stands in a grid: corner `turn` lies toward the grid's (0, 0).
 struct Placed {
@@ -64,36 +53,6 @@ class Neighbors {
 };
 
 }  // namespace
-
-QuadList joined_quads(std::span<const std::uint32_t> corners) {
-  const std::size_t count = corners.size() / 3;
-  QuadList quads;
-  quads.corners.reserve(count * 2 + 4);
-  std::vector<bool> taken(count, false);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (taken[i]) continue;
-    const std::uint32_t* a = &corners[3 * i];
-    std::uint32_t quad[4] = {a[0], a[1], a[2], a[2]};
-    for (std::size_t k = i + 1; k < std::min(count, i + 1 + kPartnerWindow); ++k) {
-      if (taken[k]) continue;
-      const std::uint32_t* b = &corners[3 * k];
-      const int edge = shared_edge(a, b);
-      if (edge < 0) continue;
-      // The shared edge becomes the diagonal between corners 1 and 3.
-      const std::uint32_t from = a[edge], to = a[(edge + 1) % 3], apex = a[(edge + 2) % 3];
-      std::uint32_t far = b[0];
-      for (int j = 0; j < 3; ++j)
-        if (b[j] != from && b[j] != to) far = b[j];
-      if (far == apex || far == from || far == to) continue;
-      quad[0] = apex, quad[1] = from, quad[2] = far, quad[3] = to;
-      taken[k] = true;
-      ++quads.paired;
-      break;
-    }
-    quads.corners.insert(quads.corners.end(), quad, quad + 4);
-  }
-  return quads;
-}
 
 GridList joined_grids(const QuadList& quads, std::span<const Vec3f> positions) {
   const Neighbors neighbors(quads);

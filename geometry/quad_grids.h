@@ -1,5 +1,4 @@
-// Triangles joined again: pairs into quads, quads into grids: the forms that Embree also takes, for benchmarks that
-// compare them. Quads are the same surface to the last triangle.
+// Quads joined into grids, a form that Embree also takes: for benchmarks that compare it.
 #pragma once
 
 #include <cstdint>
@@ -7,22 +6,10 @@
 #include <vector>
 
 #include "geometry/buffer.h"
+#include "geometry/quad_pairs.h"
 #include "geometry/vec.h"
 
 namespace raytree {
-
-struct QuadList {
-  /// [quad][4]: the quad's triangles are its corners (0, 1, 3) and (2, 3, 1), as Embree halves a quad. A triangle that
-  /// found no partner has corners 2 and 3 alike.
-  Buffer<std::uint32_t> corners;
-  std::size_t paired = 0;  ///< quads of two triangles
-
-  std::size_t size() const { return corners.size() / 4; }
-};
-
-/// Pairs each triangle with the first of the few behind it that shares an edge with it, wound alike. corners:
-/// [triangle][3].
-QuadList joined_quads(std::span<const std::uint32_t> corners);
 
 inline constexpr std::uint32_t kMostGridQuads = 8;  ///< along a side of a grid
 

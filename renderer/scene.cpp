@@ -280,16 +280,17 @@ std::string building_text(const SceneSummary& summary) {
 }
 
 void build_embree(const PrepareOptions& options, Scene& scene) {
-  HierarchyDemand demand;
-  demand.primitives = primitive_count(scene.summary);
-  demand.rays = expected_rays(scene.description);
+  std::uint64_t memory = 0;
   if (options.memory_allowed > 0)
-    demand.memory_allowed =
+    memory =
         options.memory_allowed > scene.summary.array_bytes ? options.memory_allowed - scene.summary.array_bytes : 1;
-  const HierarchyChoice choice =
-      options.hierarchy.empty() ? choose_hierarchy(demand) : hierarchy_named(options.hierarchy);
+  const HierarchyChoice choice = options.hierarchy.empty()
+                                     ? choose_hierarchy(hierarchy_demand(*scene.shapes, primitive_count(scene.summary),
+                                                                         expected_rays(scene.description), memory))
+                                     : hierarchy_named(options.hierarchy);
   scene.summary.hierarchy = choice.reason;
   EmbreeOptions embree;
+  embree.primitives = choice.chosen->primitives;
   embree.quality = choice.chosen->quality;
   embree.compact = choice.chosen->compact;
   embree.robust = options.watertight;

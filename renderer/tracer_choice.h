@@ -13,12 +13,14 @@
 
 namespace raytree {
 
-/// What was measured of one kind of hierarchy over a million triangles and more, on two Zen 3 cores with Embree 3.13.5.
+/// What was measured of one kind of hierarchy over a million triangles and more, on a processor with AVX-512 and Embree
+/// 3.13.5. Of quads: where every triangle has a partner; each without one counts as two.
 struct HierarchyCost {
   const char* name;
+  EmbreeOptions::Primitives primitives;
   EmbreeOptions::Quality quality;
   bool compact;
-  double bytes;          ///< a triangle
+  double bytes;          ///< a triangle, Embree's and our own beside the mesh
   double build_seconds;  ///< a million triangles, one core
   double speed;          ///< of tracing, the balanced one's is 1
   /// Whether it is the same for any number of threads that build it. Embree's quick one is not where surfaces coincide:
@@ -31,6 +33,7 @@ const std::vector<HierarchyCost>& hierarchy_costs();
 
 struct HierarchyDemand {
   std::uint64_t primitives = 0;      ///< triangles, spheres and the like, each once however often it is used
+  std::uint64_t quads = 0;           ///< the same with triangles joined in pairs
   double rays = 0;                   ///< expected
   std::uint64_t memory_allowed = 0;  ///< bytes, of the hierarchy; 0: any
 };
@@ -39,6 +42,11 @@ struct HierarchyChoice {
   const HierarchyCost* chosen = nullptr;
   std::string reason;  ///< one line for --verbose
 };
+
+/// Primitives of a scene and, where quads may be worth their joining, of the same with triangles joined in pairs
+/// (else: as many as primitives). The scene's arrays must be in place.
+HierarchyDemand hierarchy_demand(const ShapeSet& shapes, std::uint64_t primitives, double rays,
+                                 std::uint64_t memory_allowed);
 
 /// The kind for which building and tracing together take least time, among the repeatable ones that fit in the memory
 /// allowed; the balanced one unless another saves kLeastSaving of the time. When none fits, the smallest.

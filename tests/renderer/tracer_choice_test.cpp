@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "geometry/terrain.h"
 
 namespace raytree {
 namespace {
 
-std::string chosen(std::uint64_t primitives, double rays, std::uint64_t memory = 0) {
-  return choose_hierarchy({primitives, rays, memory}).chosen->name;
+/// partners: the share of triangles that have one.
+std::string chosen(std::uint64_t primitives, double rays, std::uint64_t memory = 0, double partners = 0) {
+  const auto quads = static_cast<std::uint64_t>(double(primitives) * (1 - partners / 2));
+  return choose_hierarchy({primitives, quads, rays, memory}).chosen->name;
 }
 
 // Pixels must not depend on threads, so what does is never chosen by itself, however much time it saves.
@@ -21,22 +24,43 @@ TEST(TracerChoice, WhatDependsOnThreadsIsTakenByNameAlone) {
   EXPECT_EQ(chosen(0, 0), "balanced");
 }
 
+TEST(TracerChoice, QuadsAreTakenWhereBuildingCountsAndTrianglesPair) {
+  EXPECT_EQ(chosen(10'000'000, 2e6, 0, 1), "quads");
+  EXPECT_EQ(chosen(10'000'000, 1e9, 0, 1), "balanced") << "many rays";
+  EXPECT_EQ(chosen(1000, 2e6, 0, 1), "balanced") << "building takes no time";
+  EXPECT_EQ(chosen(10'000'000, 2e6, 0, 0.3), "balanced") << "few have partners";
+}
+
 TEST(TracerChoice, MemoryIsKept) {
   EXPECT_EQ(chosen(10'000'000, 2e6, 700'000'000), "balanced");
+  EXPECT_EQ(chosen(10'000'000, 1e9, 600'000'000, 1), "quads");
   EXPECT_EQ(chosen(10'000'000, 1e9, 400'000'000), "compact");
-  const HierarchyChoice none = choose_hierarchy({10'000'000, 1e9, 1000});
+  EXPECT_EQ(chosen(10'000'000, 1e9, 320'000'000, 1), "compact-quads");
+  const HierarchyChoice none = choose_hierarchy({10'000'000, 10'000'000, 1e9, 1000});
   EXPECT_STREQ(none.chosen->name, "compact");
   EXPECT_NE(none.reason.find("more than the memory allowed"), std::string::npos);
 }
 
+TEST(TracerChoice, PairsAreCountedWhereTheyMayBeWorthIt) {
+  TerrainParameters terrain;
+  terrain.triangles = 200'000;
+  ShapeSet shapes;
+  shapes.meshes.resize(1);
+  shapes.meshes[0].mesh = make_terrain(terrain);
+  const std::uint64_t triangles = shapes.meshes[0].mesh.triangle_count();
+  EXPECT_EQ(hierarchy_demand(shapes, triangles + 5, 1e5, 0).quads, triangles / 2 + 5);
+  EXPECT_EQ(hierarchy_demand(shapes, triangles, 1e9, 0).quads, triangles) << "nothing to gain";
+}
+
 TEST(TracerChoice, NamesAreTakenOrListed) {
   EXPECT_TRUE(hierarchy_named("compact").chosen->compact);
+  EXPECT_EQ(hierarchy_named("compact-quads").chosen->primitives, EmbreeOptions::Primitives::quads);
   EXPECT_EQ(hierarchy_named("quick").chosen->quality, EmbreeOptions::Quality::low);
   try {
     hierarchy_named("best");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("balanced, quick, compact"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("balanced, quads, quick, compact, compact-quads"), std::string::npos);
   }
 }
 
