@@ -14,6 +14,7 @@
 #include "geometry/error.h"
 #include "geometry/stopwatch.h"
 #include "geometry/terrain.h"
+#include "renderer/tracer_choice.h"
 
 namespace raytree::benchmarks {
 namespace {

@@ -78,7 +78,7 @@ std::vector<Knob> knobs_of(const SceneTraits& traits, int reference_grid) {
       knobs.push_back(flag_knob("reflections", "--reflections", {"classic", "clamped", "consistent"}));
   }
   if (traits.triangles) {
-    knobs.push_back(flag_knob("hierarchy", "--hierarchy", {"quick", "balanced", "compact"}));
+    knobs.push_back(flag_knob("hierarchy", "--hierarchy", {"quick", "quads", "balanced", "compact", "compact-quads"}));
     knobs.push_back(flag_knob("edges", "--edges", {"fast", "watertight"}));
   }
   knobs.push_back(flag_knob("tracer", "--intersector", {"embree", "spheres"}));
