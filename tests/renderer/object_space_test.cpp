@@ -273,6 +273,26 @@ TEST(ObjectSpace, KeepsItsDigitsFarFromTheWorldsOrigin) {
   EXPECT_EQ(d.off, 0);
 }
 
+TEST(ObjectSpace, PatternsAndBumpsOfAnySizeGiveNumbers) {
+  for (const double scale : {1e-6, 1.0, 1e6})
+    for (const double size : {1e-300, 1e-18, 1.0, 1e18})
+      for (const auto kind : {BumpDescription::Kind::noise, BumpDescription::Kind::wrinkles,
+                              BumpDescription::Kind::ripples, BumpDescription::Kind::stripes})
+        for (const double amplitude : {1e-18, 1.0, -1e18}) {
+          const Matrix44d m = carried_by(Vec3d(scale), {0.4, -1.1, 2}, {0, 0, 0});
+          SceneDescription scene = carried(shape(SphereShape{}, "carried"), m, Carrier::nested);
+          scene.image = {16, 16};
+          CheckerPattern checker;
+          checker.size = size;
+          std::get<StripesPattern>(scene.materials[0].diffuse).size = size;
+          scene.materials[0].ambient = checker;
+          scene.materials[0].bump = BumpDescription{kind, amplitude, size};
+          const RenderResult result = rendered(std::move(scene));
+          ASSERT_EQ(result.statistics.not_finite_samples, 0u) << scale << " " << size << " " << amplitude;
+          expect_finite(result.film);
+        }
+}
+
 // --- normals ---
 
 /// Central differences of a moved surface p(s, t), unit.
