@@ -86,7 +86,8 @@ class Writer {
     put("light_source {{ {} {} }}\n", vector(point->position), rgb(light.color));
   }
 
-  void write_material(const MaterialDescription& material) {
+  /// `to_world`: of the shape that the material is of.
+  void write_material(const MaterialDescription& material, const Matrix44d& to_world) {
     if (picture_ == PovrayPicture::nearness) {
       // 1 - distance / reach within the sphere of that radius about the eye.
       put("texture {{ pigment {{ spherical color_map {{ [0 rgb 0] [1 rgb 1] }} scale {} translate {} }} "
@@ -109,8 +110,10 @@ class Writer {
       if (checker == nullptr || checker->plane != CheckerPattern::Plane::xz || transmits)
         refuse("a pattern of this kind");
       // POV-Ray's checker has cubes: half a cube down, a floor at height 0 lies amid one.
-      put("texture {{ pigment {{ checker {} {} translate <0,-0.5,0> scale {} translate <{},0,{}> }} ",
-          rgb(checker->even), rgb(checker->odd), checker->size, checker->offset.x, checker->offset.y);
+      put("texture {{ pigment {{ checker {} {} translate <0,-0.5,0> scale {} translate <{},0,{}> ", rgb(checker->even),
+          rgb(checker->odd), checker->size, checker->offset.x, checker->offset.y);
+      if (checker->space == SolidSpace::object && to_world != Matrix44d()) write_matrix(to_world);
+      put("}} ");
     }
     const Rgb& weight = material.highlight.weight;
     if (weight.r != weight.g || weight.g != weight.b) refuse("a colored highlight");
@@ -126,7 +129,16 @@ class Writer {
   void write_material_of(ShapeId shape) {
     const std::uint32_t index = scene_.shape_materials[shape];
     const auto& materials = scene_.description.materials;
-    write_material(index < materials.size() ? materials[index] : MaterialDescription());
+    write_material(index < materials.size() ? materials[index] : MaterialDescription(),
+                   scene_.description.shapes[shape].transform);
+  }
+
+  /// Row vectors, as here: three axes, then where they meet.
+  void write_matrix(const Matrix44d& m) {
+    put("matrix <");
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 3; ++column) put("{}{}", row + column > 0 ? "," : "", m[row][column]);
+    put("> ");
   }
 
   void write_mesh(const MeshEntry& entry) {

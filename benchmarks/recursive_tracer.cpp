@@ -74,7 +74,9 @@ class Tracer {
     const SurfacePoint surface = surface_at(*scene_.shapes, ray.origin, ray.direction, hit, wants_texture_);
     const Material& material = scene_.materials[scene_.material_at(hit)];
     const SampleWindow window = ray.from_eye ? SampleWindow{&scene_.camera, 1} : SampleWindow();
-    const ShadingPoint point = shading_point(surface, ray.direction, material, window);
+    const std::optional<ObjectFrame> moved = scene_.frame_at(hit, material);
+    const ObjectFrame* const frame = moved ? &*moved : nullptr;
+    const ShadingPoint point = shading_point(surface, ray.direction, material, window, frame);
     MediaBoundary boundary;
     if (media_) {
       boundary = media_->boundary(ray.media, solid_at(scene_, hit), point.leaving);
@@ -90,7 +92,7 @@ class Tracer {
     }
     if (settings_.distance_attenuation > 0 && ray.level > 1)
       weight *= segment_attenuation(static_cast<float>(settings_.distance_attenuation), surface.distance);
-    sum_ += weight * scene_.ambient * ambient_of(point, window);
+    sum_ += weight * scene_.ambient * ambient_of(point, window, frame);
     if (material.has_diffuse || material.has_highlight)
       for (const Light& light : scene_.lights) add_light(point, light, weight, boundary.before);
     if (material.has_reflection || material.has_transmission) branch(point, boundary, weight, ray.allowance, ray.level);

@@ -128,7 +128,11 @@ class Validation {
       return false;
     if ((a.shading_normal - b.shading_normal).length() > kMostPixelDifference) return true;
     if (ray.kind == RayKind::primary) return false;
-    const Rgb off = material.diffuse.at(a, Footprint()) - material.diffuse.at(b, Footprint());
+    const auto diffuse = [&](const Hit& hit, const SurfacePoint& point) {
+      const std::optional<ObjectFrame> moved = scene_.frame_at(hit, material);
+      return material.diffuse.at(point, Footprint(), moved ? &*moved : nullptr);
+    };
+    const Rgb off = diffuse(ray.hit, a) - diffuse(truth, b);
     return std::max({std::abs(off.r), std::abs(off.g), std::abs(off.b)}) > kMostPixelDifference;
   }
 

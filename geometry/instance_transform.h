@@ -1,5 +1,6 @@
 // What the transform of an instance does to points, normals and errors. The group's shapes are where the instance's
-// single-precision matrix puts them, exactly: everything here reckons from that matrix in double.
+// single-precision matrix puts them, exactly: everything here reckons from that matrix in double. The transform that a
+// shape is described with is one of these, too.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +26,11 @@ inline constexpr double kLeastDeterminant = 1e-30, kMostDeterminant = 1e30;
 class InstanceTransform {
  public:
   explicit InstanceTransform(const Instance& instance)
-      : x_(instance.axis(0)), y_(instance.axis(1)), z_(instance.axis(2)), origin_(instance.origin()) {
+      : InstanceTransform(Vec3d(instance.axis(0)), Vec3d(instance.axis(1)), Vec3d(instance.axis(2)),
+                          Vec3d(instance.origin())) {}
+  /// The axes inside and where they meet, as they lie outside.
+  InstanceTransform(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& origin)
+      : x_(x), y_(y), z_(z), origin_(origin) {
     minor_[0] = y_.cross(z_), minor_[1] = z_.cross(x_), minor_[2] = x_.cross(y_);
     determinant_ = x_.dot(minor_[0]);
   }
@@ -49,6 +54,8 @@ class InstanceTransform {
   Vec3d normal(const Vec3d& n) const {
     return (minor_[0] * n.x + minor_[1] * n.y + minor_[2] * n.z) * (1 / determinant_);
   }
+  /// The way back of normals, of any length.
+  Vec3d normal_inside(const Vec3d& n) const { return {x_.dot(n), y_.dot(n), z_.dot(n)}; }
   /// The way from scene space into the group, in double.
   Vec3d vector_inside(const Vec3d& v) const {
     return Vec3d(v.dot(minor_[0]), v.dot(minor_[1]), v.dot(minor_[2])) * (1 / determinant_);

@@ -69,6 +69,9 @@ struct MeshEntry {
 
 /// What lies within bounds.
 struct BoundedShapes {
+  /// Where the space of these arrays begins: of the scene's own shapes in the world, of a group's in the coordinates
+  /// that the group is described in.
+  Vec3d origin{0, 0, 0};
   SphereArray spheres;            ///< kSphereGeometry
   DiscArray discs;                ///< kDiscGeometry
   ConeArray cones;                ///< kConeGeometry
@@ -104,7 +107,6 @@ struct Instance {
 };
 
 struct ShapeSet : BoundedShapes {
-  Vec3d origin{0, 0, 0};              ///< world position of scene space's origin
   std::vector<Plane> planes;          ///< kPlaneGeometry
   std::vector<BoundedShapes> groups;  ///< each in a space of its own; none holds another: nesting is resolved
   Buffer<Instance> instances;         ///< those of one shape stand together

@@ -11,12 +11,12 @@ Bump::Bump(const BumpDescription& description, const Vec3d& scene_origin)
     : kind_(description.kind),
       amplitude_(description.amplitude),
       frequency_(1 / description.size),
-      origin_(description.offset - scene_origin),
+      origin_(description.space, description.offset, scene_origin),
       direction_(unit(description.direction)),
       octaves_{description.octaves, description.gain, description.seed} {}
 
-Height Bump::height(const Vec3f& position, double width) const {
-  const Vec3d place = (Vec3d(position) - origin_) * frequency_;
+Height Bump::height(const Vec3d& from_origin, double width) const {
+  const Vec3d place = from_origin * frequency_;
   width *= frequency_;
   Height height;
   // A wave along `toward`, 1 long and from -1 to 1 high, `phase` periods on.
@@ -46,13 +46,21 @@ Height Bump::height(const Vec3f& position, double width) const {
 }
 
 Vec3f Bump::bent(const Vec3f& normal, const Vec3f& side, const Vec3f& to_viewer, bool inward, const Vec3f& position,
-                 double width) const {
-  const Vec3d n(normal), gradient = height(position, width).gradient;
+                 const Footprint& footprint, const ObjectFrame* frame) const {
+  const ObjectFrame* own = origin_.frame(frame);
+  Vec3d n(normal);
+  if (own != nullptr) n = unit(own->normal(n));
+  const Vec3d gradient = height(origin_.to(position, frame), origin_.window(footprint, frame).width()).gradient;
   const Vec3d rise = gradient - n * gradient.dot(n);
-  const Vec3d turned = inward ? n + rise : n - rise;
-  const double square = turned.dot(turned);
+  Vec3d turned = inward ? n + rise : n - rise;
+  double square = turned.dot(turned);
   // A slope that is no number, or leaves every range, bends nothing.
   if (!(square < 1e30)) return normal;
+  if (own != nullptr) {
+    turned = own->scene_normal(turned);
+    square = turned.dot(turned);
+    if (!std::isnormal(square)) return normal;
+  }
   Vec3f bent(turned * (1 / std::sqrt(square)));
   const auto face = [&](const Vec3f& direction) {
     const float missing = kLeastFacing - bent.dot(direction);

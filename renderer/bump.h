@@ -4,7 +4,9 @@
 #include <cstdint>
 
 #include "geometry/vec.h"
+#include "renderer/footprint.h"
 #include "renderer/noise.h"
+#include "renderer/object_space.h"
 #include "renderer/scene_description.h"
 
 namespace raytree {
@@ -18,20 +20,25 @@ class Bump {
   /// `scene_origin`: see ShapeSet::origin.
   Bump(const BumpDescription& description, const Vec3d& scene_origin);
 
-  /// At `position` (scene space), through a window of `width`; all in scene units.
-  Height height(const Vec3f& position, double width) const;
+  /// It lies in the shape's own space.
+  bool follows_object() const { return origin_.follows_object(); }
+
+  /// At a place that is measured from where the bump begins, through a window of `width`; all in units of its space.
+  Height height(const Vec3d& place, double width) const;
 
   /// N' = unit(N - s (grad h - (grad h.N) N)): the normal of the surface that is raised by h along its outward normal,
   /// to the first order in h; s is -1 where `normal` points inward. `normal`, `side` (geometric) and `to_viewer` are
   /// unit and on one side, save that `normal` may lean away from the viewer. Continuous; on that side, by kLeastFacing.
+  /// Where the bump follows its object and `frame` is not null, N is taken to the shape's own space, the surface is
+  /// raised there, and N' comes back as normals do.
   Vec3f bent(const Vec3f& normal, const Vec3f& side, const Vec3f& to_viewer, bool inward, const Vec3f& position,
-             double width) const;
+             const Footprint& footprint, const ObjectFrame* frame) const;
 
  private:
   BumpDescription::Kind kind_;
-  double amplitude_, frequency_;  ///< per scene unit
-  Vec3d origin_;                  ///< scene space
-  Vec3d direction_;               ///< unit
+  double amplitude_, frequency_;  ///< per unit of its space
+  SolidOrigin origin_;
+  Vec3d direction_;  ///< unit
   Octaves octaves_;
 };
 

@@ -67,6 +67,8 @@ Material make_material(const MaterialDescription& description, bool fresnel, con
       needs_texture(description.diffuse) || (description.ambient && needs_texture(*description.ambient));
   if (description.bump) material.bump = std::make_shared<const Bump>(*description.bump, scene_origin);
   material.is_varied = material.diffuse.varies() || (kFeatures.bumps && material.bump != nullptr);
+  material.follows_objects = material.diffuse.follows_object() || material.ambient.follows_object() ||
+                             (kFeatures.bumps && material.bump != nullptr && material.bump->follows_object());
   return material;
 }
 

@@ -6,17 +6,20 @@
 
 #include "geometry/angle.h"
 #include "renderer/noise.h"
+#include "renderer/object_space.h"
 #include "renderer/square_wave.h"
 
 namespace raytree {
 namespace {
 
-/// A linear function of the place: position in scene space, or texture coordinates.
+// Places are measured from where the pattern begins, in the pattern's space: that of the shape, of the scene, or of
+// texture coordinates.
+
+/// A linear function of the place.
 struct Coordinate {
-  Vec3d origin{0, 0, 0};     ///< where it is 0
   Vec3d direction{0, 0, 0};  ///< its gradient
 
-  double at(const Vec3d& place) const { return (place - origin).dot(direction); }
+  double at(const Vec3d& place) const { return place.dot(direction); }
   double over(const Vec3f& edge) const { return Vec3d(edge).dot(direction); }
 };
 
@@ -56,16 +59,13 @@ struct Stripes {
 };
 
 struct Noise {
-  Vec3d origin;
   double cells_per_unit = 1;
   double contrast = 2;
   Octaves octaves;
 
   double share(const Vec3d& place, const Footprint& footprint) const {
-    const double width = std::sqrt(std::max<double>(footprint.edge.dot(footprint.edge),  //
-                                                    footprint.other_edge.dot(footprint.other_edge)));
-    return 0.5 +
-           0.5 * contrast * octave_noise(octaves, (place - origin) * cells_per_unit, width * cells_per_unit).value;
+    const double width = footprint.width() * cells_per_unit;
+    return 0.5 + 0.5 * contrast * octave_noise(octaves, place * cells_per_unit, width).value;
   }
 };
 
@@ -76,19 +76,23 @@ class VaryingColor {
   std::variant<Checker, Stripes, Noise> kind;
   bool over_texture = false;
   bool filtered = true;
+  SolidOrigin origin;             ///< where it lies over positions
+  Vec3d texture_origin{0, 0, 0};  ///< where it lies over texture coordinates
 
   /// Share of `even` in the mixture.
-  double share(const SurfacePoint& point, const Footprint& footprint) const {
-    const Vec3d place = over_texture ? Vec3d(point.texture.x, point.texture.y, 0) : Vec3d(point.position);
+  double share(const SurfacePoint& point, const Footprint& footprint, const ObjectFrame* frame) const {
+    const Vec3d place =
+        over_texture ? Vec3d(point.texture.x, point.texture.y, 0) - texture_origin : origin.to(point.position, frame);
     // How texture coordinates run over the surface is not known here.
-    static constexpr Footprint kPoint;
-    const Footprint& window = filtered && !over_texture ? footprint : kPoint;
+    const Footprint window = filtered && !over_texture ? origin.window(footprint, frame) : Footprint();
     return std::visit([&](const auto& one) { return one.share(place, window); }, kind);
   }
 };
 
-Rgb Pattern::mixed(const SurfacePoint& point, const Footprint& footprint) const {
-  const double share = varying->share(point, footprint);
+bool Pattern::follows_object() const { return varies() && !varying->over_texture && varying->origin.follows_object(); }
+
+Rgb Pattern::mixed(const SurfacePoint& point, const Footprint& footprint, const ObjectFrame* frame) const {
+  const double share = varying->share(point, footprint, frame);
   // The two colors themselves come without rounding; NaN, from a place that is not finite, stays in the sum.
   if (share >= 1) return even;
   if (share <= 0) return odd;
@@ -102,8 +106,11 @@ struct Maker {
   Pattern pattern;
   VaryingColor color;
 
-  Coordinate coordinate(const Vec3d& direction, const Vec3d& offset) const {
-    return {color.over_texture ? offset : offset - scene_origin, direction};
+  void begin_at(const Vec3d& offset, PatternSpace space) {
+    color.over_texture = space == PatternSpace::uv;
+    color.texture_origin = offset;
+    color.origin =
+        SolidOrigin(space == PatternSpace::object ? SolidSpace::object : SolidSpace::world, offset, scene_origin);
   }
 
   void operator()(const Rgb& constant) { pattern.even = pattern.odd = constant; }
@@ -111,31 +118,29 @@ struct Maker {
   void operator()(const CheckerPattern& checker) {
     pattern.even = checker.even, pattern.odd = checker.odd;
     color.filtered = checker.filtered;
-    color.over_texture = checker.plane == CheckerPattern::Plane::uv;
     int axis[2] = {0, 1};
     if (checker.plane == CheckerPattern::Plane::xz) axis[1] = 2;
     if (checker.plane == CheckerPattern::Plane::yz) axis[0] = 1, axis[1] = 2;
     Vec3d offset(0, 0, 0), a(0, 0, 0), b(0, 0, 0);
     offset[axis[0]] = checker.offset.x, offset[axis[1]] = checker.offset.y;
     a[axis[0]] = b[axis[1]] = 1 / checker.size;
-    color.kind = Checker{coordinate(a, offset), coordinate(b, offset)};
+    color.kind = Checker{{a}, {b}};
+    const PatternSpace solid = checker.space == SolidSpace::object ? PatternSpace::object : PatternSpace::world;
+    begin_at(offset, checker.plane == CheckerPattern::Plane::uv ? PatternSpace::uv : solid);
   }
 
   void operator()(const StripesPattern& stripes) {
     pattern.even = stripes.even, pattern.odd = stripes.odd;
     color.filtered = stripes.filtered;
-    color.over_texture = stripes.space == PatternSpace::uv;
-    color.kind = Stripes{coordinate(unit(stripes.direction) / stripes.size, stripes.offset), stripes.smooth};
+    color.kind = Stripes{{unit(stripes.direction) / stripes.size}, stripes.smooth};
+    begin_at(stripes.offset, stripes.space);
   }
 
   void operator()(const NoisePattern& noise) {
     pattern.even = noise.high, pattern.odd = noise.low;
     color.filtered = noise.filtered;
-    color.over_texture = noise.space == PatternSpace::uv;
-    color.kind = Noise{color.over_texture ? noise.offset : noise.offset - scene_origin,
-                       1 / noise.size,
-                       noise.contrast,
-                       {noise.octaves, noise.gain, noise.seed}};
+    color.kind = Noise{1 / noise.size, noise.contrast, {noise.octaves, noise.gain, noise.seed}};
+    begin_at(noise.offset, noise.space);
   }
 };
 

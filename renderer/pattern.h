@@ -8,19 +8,12 @@
 #include "geometry/vec.h"
 #include "renderer/color.h"
 #include "renderer/features.h"
+#include "renderer/footprint.h"
 #include "renderer/scene_description.h"
 
 namespace raytree {
 
-/// The parallelogram of a surface that a sample stands for: what the sample's share of the picture covers of the plane
-/// that touches the surface. Both edges 0: a point.
-struct Footprint {
-  Vec3f edge{0, 0, 0}, other_edge{0, 0, 0};  ///< scene units, tangent to the surface
-  /// Patterns with edges are taken at a point where the footprint is smaller than a cell of theirs: adaptive sampling
-  /// finds the edges by what samples beside them differ in, and a sample that blurs them hides them from it.
-  bool leaves_edges = false;
-};
-
+class ObjectFrame;
 class VaryingColor;
 
 struct Pattern {
@@ -28,14 +21,16 @@ struct Pattern {
   std::shared_ptr<const VaryingColor> varying;  ///< null: constant, `even`
 
   bool varies() const { return kFeatures.patterns && varying != nullptr; }
-  Rgb at(const SurfacePoint& point, const Footprint& footprint) const {
-    return varies() ? mixed(point, footprint) : even;
+  /// `frame`: of the shape that the point lies on, where it has one (object_space.h); else null.
+  Rgb at(const SurfacePoint& point, const Footprint& footprint, const ObjectFrame* frame) const {
+    return varies() ? mixed(point, footprint, frame) : even;
   }
+  bool follows_object() const;  ///< it lies in the shape's own space
   /// No smaller than any value: mixtures lie between the two.
   Rgb largest() const { return max(even, odd); }
 
  private:
-  Rgb mixed(const SurfacePoint& point, const Footprint& footprint) const;
+  Rgb mixed(const SurfacePoint& point, const Footprint& footprint, const ObjectFrame* frame) const;
 };
 
 /// `scene_origin`: see ShapeSet::origin. Positions are measured from where the pattern begins, in double, so that they

@@ -172,13 +172,16 @@ bool SampleTracer::State::find_materials() {
   std::size_t count = 0;
   for (const std::uint32_t i : batch_points()) {
     const Material& material = *shading.materials[i];
+    const std::optional<ObjectFrame> moved = scene.frame_at(hits[i], material);
+    const ObjectFrame* const frame = moved ? &*moved : nullptr;
     if (material.is_varied) {
       ShadingPoint point = shading_point(i);
-      vary(point, window);
+      vary(point, window, frame);
       shading.set_varied(i, point);
     }
-    ambients[i] = !material.ambient_as_diffuse && material.ambient.varies() ? varied_ambient(shading_point(i), window)
-                                                                            : plain_ambient(i);
+    ambients[i] = !material.ambient_as_diffuse && material.ambient.varies()
+                      ? varied_ambient(shading_point(i), window, frame)
+                      : plain_ambient(i);
     if (material.takes_on_the_way && passes(i, hits[i])) continue;
     points[count++] = i;
   }

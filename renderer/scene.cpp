@@ -131,6 +131,7 @@ std::vector<std::string> features_in_use(const Scene& scene) {
   note_shading(scene.summary.shapes);
   for (const GroupSummary& group : scene.summary.groups) note_shading(group.shapes);
   if (!shapes.instances.empty()) features.insert("instances");
+  if (!scene.object_spaces.empty()) features.insert("object spaces");
   if (!shapes.planes.empty()) features.insert("planes");
   if (shapes.origin != Vec3d(0, 0, 0)) features.insert("recentering");
   return {features.begin(), features.end()};
@@ -352,7 +353,9 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   // Where media or paths are tracked no surface is a plain one: one flag each serves the tracer's inner loops.
   const bool tracked = scene.tracks_media || scene.rough_surfaces;
   const bool free_reflections = scene.description.render.facets.reflections == FacetReflections::classic;
+  scene.object_spaces = find_object_spaces(scene);
   for (Material& material : scene.materials) {
+    material.follows_objects &= !scene.object_spaces.empty();
     material.free_reflections = free_reflections;
     material.special_optics |= free_reflections;
     material.takes_on_the_way = material.absorbs || material.one_sided || tracked;

@@ -19,6 +19,7 @@
 #include "renderer/camera.h"
 #include "renderer/light.h"
 #include "renderer/material.h"
+#include "renderer/object_space.h"
 #include "renderer/radiance_bound.h"
 #include "renderer/scene_description.h"
 #include "renderer/small_objects.h"
@@ -130,6 +131,7 @@ class Scene {
   std::vector<Material> materials;
   std::vector<std::uint32_t> shape_materials;  ///< [shape] -> index into materials, or kOwnMaterials
   std::vector<ShapeShading> shape_shading;     ///< [shape]
+  ObjectSpaces object_spaces;                  ///< that patterns and bumps follow
   std::vector<Light> lights;
   BackgroundLight background;
   Rgb ambient;
@@ -152,6 +154,13 @@ class Scene {
     if (all != kOwnMaterials) return all;
     const BoundedShapes& group = shapes->groups[instance.group];
     return own_material(group, group.bounded_shape_of(hit.geometry, hit.primitive), hit.geometry, hit.primitive);
+  }
+
+  /// What patterns and bumps that follow their object go by at a hit that shows `material`: nothing where they lie in
+  /// the world, or it is the object's own space.
+  std::optional<ObjectFrame> frame_at(const Hit& hit, const Material& material) const {
+    if (!((kFeatures.patterns || kFeatures.bumps) && material.follows_objects)) return std::nullopt;
+    return object_spaces.at(*shapes, hit);
   }
 
   /// The same of a hit on `shape` of `list`, where no instance says otherwise.

@@ -152,19 +152,26 @@ struct LightDescription {
   std::variant<DirectionalLight, PointLight, SpotLight> kind;
 };
 
+/// The space that a solid pattern or a bump is measured in.
+enum class SolidSpace {
+  object,  ///< the shape's own, before its transform and those of instances: patterns are carried with the shape
+  world    ///< patterns lie still, and shapes move through them
+};
+
 /// A checkerboard over two coordinates of the hit point.
 struct CheckerPattern {
-  enum class Plane { xz, xy, yz, uv };  ///< world axes, or the surface's texture coordinates
+  enum class Plane { xz, xy, yz, uv };  ///< axes of `space`, or the surface's texture coordinates
   Rgb even{0.9f, 0.9f, 0.9f}, odd{0.1f, 0.1f, 0.1f};
-  double size = 1;  ///< edge of one square, scene units (texture units for uv)
+  double size = 1;  ///< edge of one square, units of `space` (texture units for uv)
   Plane plane = Plane::xz;
-  Vec2d offset{0, 0};  ///< where a corner of an even square lies, in the same units
+  SolidSpace space = SolidSpace::object;  ///< nothing to uv
+  Vec2d offset{0, 0};                     ///< where a corner of an even square lies, in the same units
   /// Whether an eye ray's sample sees the mean over what it covers of the surface in place of one point (not over uv).
   bool filtered = true;
 };
 
-/// What a pattern lies over: world positions, or the surface's texture coordinates (u, v, 0).
-enum class PatternSpace { world, uv };
+/// What a pattern lies over: positions, see SolidSpace, or the surface's texture coordinates (u, v, 0).
+enum class PatternSpace { object, world, uv };
 
 /// Layers across a direction, of two colors by turns.
 struct StripesPattern {
@@ -172,7 +179,7 @@ struct StripesPattern {
   double size = 1;           ///< width of one stripe
   Vec3d direction{1, 0, 0};  ///< across the stripes; any length but zero
   bool smooth = false;       ///< the colors pass into each other as a sine does
-  PatternSpace space = PatternSpace::world;
+  PatternSpace space = PatternSpace::object;
   Vec3d offset{0, 0, 0};  ///< a point where an even stripe begins
   bool filtered = true;
 };
@@ -185,25 +192,27 @@ struct NoisePattern {
   double gain = 0.5;    ///< and so many times as high
   double contrast = 2;  ///< the share of `high` is 1/2 + contrast * noise / 2, kept between 0 and 1
   std::uint32_t seed = 0;
-  PatternSpace space = PatternSpace::world;
+  PatternSpace space = PatternSpace::object;
   Vec3d offset{0, 0, 0};  ///< a corner of a cell
   bool filtered = true;
 };
 using ColorPattern = std::variant<Rgb, CheckerPattern, StripesPattern, NoisePattern>;
 
-/// A height over the surface, in world space, that its normals follow but its outline does not (Blinn 1978).
+/// A height over the surface that its normals follow but its outline does not (Blinn 1978).
 struct BumpDescription {
   enum class Kind { noise, wrinkles, ripples, stripes };
   Kind kind = Kind::wrinkles;
-  /// Scene units. Waves are so high above their mean, noise deviates by about a quarter of it; less than 0 sinks what
-  /// was raised.
+  /// Units of `space`. Waves are so high above their mean, noise deviates by about a quarter of it; less than 0 sinks
+  /// what was raised.
   double amplitude = 0.1;
-  double size = 1;  ///< scene units: edge of a cell of the first octave; length of a wave
+  double size = 1;  ///< units of `space`: edge of a cell of the first octave; length of a wave
   int octaves = 1;
   double gain = 0.5;
   std::uint32_t seed = 0;
   Vec3d offset{0, 0, 0};     ///< where it begins; ripples: their center
   Vec3d direction{1, 0, 0};  ///< stripes: across them; any length but zero
+  /// The surface is raised in this space: a transform stretches and turns the bump with its shape, or leaves it alone.
+  SolidSpace space = SolidSpace::object;
 };
 
 /// W(i) of Phong's eq. 4.5 at one angle of incidence.

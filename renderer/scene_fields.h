@@ -134,16 +134,26 @@ struct EnumTable<Falloff> {
 template <>
 struct EnumTable<CheckerPattern::Plane> {
   using E = CheckerPattern::Plane;
-  static constexpr std::array<EnumEntry<E>, 4> entries{{{E::xz, "xz", "world x and z, a floor"},
-                                                        {E::xy, "xy", "world x and y, a wall"},
-                                                        {E::yz, "yz", "world y and z, a side wall"},
+  static constexpr std::array<EnumEntry<E>, 4> entries{{{E::xz, "xz", "x and z, a floor"},
+                                                        {E::xy, "xy", "x and y, a wall"},
+                                                        {E::yz, "yz", "y and z, a side wall"},
                                                         {E::uv, "uv", "the surface's texture coordinates"}}};
+};
+inline constexpr std::string_view kObjectSpaceText =
+    "the shape's own space, before its transform and those of instances, so it is carried with the shape";
+inline constexpr std::string_view kWorldSpaceText = "world space, so it lies still and shapes move through it";
+template <>
+struct EnumTable<SolidSpace> {
+  using E = SolidSpace;
+  static constexpr std::array<EnumEntry<E>, 2> entries{
+      {{E::object, "object", kObjectSpaceText}, {E::world, "world", kWorldSpaceText}}};
 };
 template <>
 struct EnumTable<PatternSpace> {
   using E = PatternSpace;
-  static constexpr std::array<EnumEntry<E>, 2> entries{
-      {{E::world, "world", "world positions"}, {E::uv, "uv", "the surface's texture coordinates (u, v, 0)"}}};
+  static constexpr std::array<EnumEntry<E>, 3> entries{{{E::object, "object", kObjectSpaceText},
+                                                        {E::world, "world", kWorldSpaceText},
+                                                        {E::uv, "uv", "the surface's texture coordinates (u, v, 0)"}}};
 };
 template <>
 struct EnumTable<BumpDescription::Kind> {
@@ -561,10 +571,13 @@ void visit_fields(Visitor& visit, T& checker) {
   visit(Field{.key = "even", .text = "Color of the square at `offset` and of every second one", .range = kNotNegative},
         checker.even);
   visit(Field{.key = "odd", .text = "Color of the squares between", .range = kNotNegative}, checker.odd);
-  visit(
-      Field{.key = "size", .text = "Edge of a square", .unit = "scene units, for uv texture units", .range = kPositive},
-      checker.size);
+  visit(Field{.key = "size",
+              .text = "Edge of a square",
+              .unit = "units of space, or of texture for uv",
+              .range = kPositive},
+        checker.size);
   visit(Field{.key = "plane", .text = "The two coordinates that the squares lie over"}, checker.plane);
+  visit(Field{.key = "space", .text = "The space of these coordinates; nothing to uv"}, checker.space);
   visit(Field{.key = "offset", .text = "Where a corner of an even square lies", .unit = "as size"}, checker.offset);
   visit_filtered(visit, checker);
 }
@@ -576,10 +589,11 @@ void visit_fields(Visitor& visit, T& stripes) {
               .range = kNotNegative},
         stripes.even);
   visit(Field{.key = "odd", .text = "Color of the stripes between", .range = kNotNegative}, stripes.odd);
-  visit(
-      Field{
-          .key = "size", .text = "Width of a stripe", .unit = "scene units, for uv texture units", .range = kPositive},
-      stripes.size);
+  visit(Field{.key = "size",
+              .text = "Width of a stripe",
+              .unit = "units of space, or of texture for uv",
+              .range = kPositive},
+        stripes.size);
   visit(Field{.key = "direction", .text = "Across the stripes; any length but zero", .nonzero = true},
         stripes.direction);
   visit(Field{.key = "smooth", .text = "Whether the colors pass into each other, as a sine does"}, stripes.smooth);
@@ -605,7 +619,7 @@ void visit_fields(Visitor& visit, T& noise) {
   visit(Field{.key = "high", .text = "Color where the noise is high", .range = kNotNegative}, noise.high);
   visit(Field{.key = "size",
               .text = "Edge of a cell of the first octave: blotches are about as large",
-              .unit = "scene units, for uv texture units",
+              .unit = "units of space, or of texture for uv",
               .range = kPositive},
         noise.size);
   visit_octaves(visit, noise);
@@ -625,18 +639,19 @@ void visit_fields(Visitor& visit, T& bump) {
   visit(Field{.key = "amplitude",
               .text = "Height of the waves above their mean; noise and wrinkles deviate by about a quarter of it; less "
                       "than 0 sinks what was raised",
-              .unit = "scene units"},
+              .unit = "units of space"},
         bump.amplitude);
   visit(Field{.key = "size",
               .text = "Length of a wave; edge of a cell of the first octave",
-              .unit = "scene units",
+              .unit = "units of space",
               .range = kPositive},
         bump.size);
   visit_octaves(visit, bump);
-  visit(Field{.key = "offset", .text = "Where the height begins; the center of ripples", .unit = "scene units"},
+  visit(Field{.key = "offset", .text = "Where the height begins; the center of ripples", .unit = "as size"},
         bump.offset);
   visit(Field{.key = "direction", .text = "Stripes: across them; any length but zero", .nonzero = true},
         bump.direction);
+  visit(Field{.key = "space", .text = "What it is measured in, and raised in"}, bump.space);
 }
 
 template <class Visitor, Is<AngleWeight> T>

@@ -157,7 +157,8 @@ std::string scene_reference() {
   out.alternatives("lights.NAME", LightDescription{}.kind);
   out.table("materials.NAME", "One material: I = ambient + diffuse + highlights + k_s S + k_t T (Whitted 1980, eq. 2).",
             MaterialDescription{});
-  out.table("materials.NAME.bump", "A height over the surface; it lies still in the world.", BumpDescription{});
+  out.table("materials.NAME.bump", "A height over the surface, carried with its shape or still in the world.",
+            BumpDescription{});
   out.table("materials.NAME.highlight", "W cos^n (Phong 1973, eq. 4.5).", HighlightDescription{});
   out.table("materials.NAME.highlight.weight_by_angle[]", "A point of W(i).", AngleWeight{});
   out.builtin_materials_table();

@@ -85,21 +85,19 @@ Footprint footprint_of(const ShadingPoint& point, const SampleWindow& window) {
   return {laid_down(right), laid_down(up), window.leaves_edges};
 }
 
-void vary(ShadingPoint& point, const SampleWindow& window) {
+void vary(ShadingPoint& point, const SampleWindow& window, const ObjectFrame* frame) {
   const Material& material = *point.material;
   const Footprint footprint = footprint_of(point, window);
-  point.diffuse = material.diffuse.at(point.surface, footprint);
+  point.diffuse = material.diffuse.at(point.surface, footprint, frame);
   if (kFeatures.bumps && material.bump) {
     SurfacePoint& surface = point.surface;
-    const double width = std::sqrt(std::max<double>(footprint.edge.dot(footprint.edge),  //
-                                                    footprint.other_edge.dot(footprint.other_edge)));
     surface.shading_normal = material.bump->bent(surface.shading_normal, surface.geometric_normal, -point.direction,
-                                                 point.leaving, surface.position, width);
+                                                 point.leaving, surface.position, footprint, frame);
   }
 }
 
-Rgb varied_ambient(const ShadingPoint& point, const SampleWindow& window) {
-  return point.material->ambient.at(point.surface, footprint_of(point, window));
+Rgb varied_ambient(const ShadingPoint& point, const SampleWindow& window, const ObjectFrame* frame) {
+  return point.material->ambient.at(point.surface, footprint_of(point, window), frame);
 }
 
 }  // namespace raytree

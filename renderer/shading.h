@@ -36,14 +36,16 @@ struct SampleWindow {
 /// What the window covers of the plane that touches the surface, normals turned to the ray.
 Footprint footprint_of(const ShadingPoint& point, const SampleWindow& window);
 
+// `frame`: of the shape that was hit, Scene::frame_at(); null where it has none or its material follows no object.
+
 /// Sets `diffuse` where it varies and bends the shading normal where there is a bump.
-void vary(ShadingPoint& point, const SampleWindow& window);
+void vary(ShadingPoint& point, const SampleWindow& window, const ObjectFrame* frame);
 
 /// The ambient coefficient where it is a varying one of its own.
-Rgb varied_ambient(const ShadingPoint& point, const SampleWindow& window);
+Rgb varied_ambient(const ShadingPoint& point, const SampleWindow& window, const ObjectFrame* frame);
 
 inline void complete_shading_point(ShadingPoint& point, const Vec3f& direction, const Material& material,
-                                   const SampleWindow& window) {
+                                   const SampleWindow& window, const ObjectFrame* frame) {
   point.direction = direction;
   point.material = &material;
   point.diffuse = material.diffuse.even;
@@ -52,21 +54,21 @@ inline void complete_shading_point(ShadingPoint& point, const Vec3f& direction, 
     point.surface.geometric_normal = -point.surface.geometric_normal;
     point.surface.shading_normal = -point.surface.shading_normal;
   }
-  if ((kFeatures.patterns || kFeatures.bumps) && material.is_varied) vary(point, window);
+  if ((kFeatures.patterns || kFeatures.bumps) && material.is_varied) vary(point, window, frame);
 }
 
 /// The ambient coefficient.
-inline Rgb ambient_of(const ShadingPoint& point, const SampleWindow& window) {
+inline Rgb ambient_of(const ShadingPoint& point, const SampleWindow& window, const ObjectFrame* frame) {
   const Material& material = *point.material;
   if (material.ambient_as_diffuse) return point.diffuse;
-  return material.ambient.varies() ? varied_ambient(point, window) : material.ambient.even;
+  return material.ambient.varies() ? varied_ambient(point, window, frame) : material.ambient.even;
 }
 
 inline ShadingPoint shading_point(const SurfacePoint& surface, const Vec3f& direction, const Material& material,
-                                  const SampleWindow& window = {}) {
+                                  const SampleWindow& window = {}, const ObjectFrame* frame = nullptr) {
   ShadingPoint point;
   point.surface = surface;
-  complete_shading_point(point, direction, material, window);
+  complete_shading_point(point, direction, material, window, frame);
   return point;
 }
 

@@ -39,7 +39,6 @@ struct GroupAssembly {
   BoundedShapes shapes;
   std::vector<ShapeList::Use> uses;
   Bounds3d bounds;  ///< of its own shapes, in the group's coordinates
-  Vec3d origin;     ///< where its shapes' space begins, in the group's coordinates
   bool has_shapes = false, has_round = false;
   std::uint64_t uses_in_all = 0;  ///< that one use of it comes to, itself included
   std::uint64_t triangles = 0, spheres = 0;
@@ -135,8 +134,7 @@ class GroupAssembler {
     }
     group.has_round = list.has_round();
     group.has_shapes = list.has_shapes();
-    group.origin = scene_origin(group.bounds);
-    move_to_space(list, group.origin, group.shapes);
+    move_to_space(list, scene_origin(group.bounds), group.shapes);
     group.uses = std::move(list.uses);
   }
 
@@ -238,7 +236,7 @@ void make_instances(const ShapeList& assembly, GroupAssembler& groups, const Sce
   for (const ShapeList::Use& use : assembly.uses)
     groups.for_each(use, [&](std::uint32_t index, const Matrix44d& transform) {
       Matrix44d from_origin;
-      from_origin.setTranslation(groups[index].origin);
+      from_origin.setTranslation(groups[index].shapes.origin);
       Instance instance = make_instance(from_origin * transform * to_scene, groups[index],
                                         description.groups[index].name, description.shapes[use.shape].where);
       instance.group = index;
@@ -279,8 +277,7 @@ ShapeSet assemble_shapes(SceneDescription& description, const Vec3d& eye, const 
     place.extendBy(eye);
     for (const Plane& plane : assembly.planes) place.extendBy(plane.point);
   }
-  shapes.origin = scene_origin(place);
-  move_to_space(assembly, shapes.origin, shapes);
+  move_to_space(assembly, scene_origin(place), shapes);
   shapes.planes = std::move(assembly.planes);
   for (Plane& plane : shapes.planes) plane.point -= shapes.origin;
   make_instances(assembly, groups, description, shapes, summary);

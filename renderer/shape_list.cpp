@@ -441,6 +441,7 @@ ShapeList assemble_list(std::vector<ShapeDescription>& shapes, ShapeId first, co
 }
 
 void move_to_space(ShapeList& list, const Vec3d& origin, BoundedShapes& shapes) {
+  shapes.origin = origin;
   for (MeshEntry& entry : list.meshes) {
     const Vec3d shift = entry.mesh.origin - origin;
     if (shift != Vec3d(0, 0, 0))

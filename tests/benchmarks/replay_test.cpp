@@ -103,6 +103,31 @@ TEST(Recursion, PaintsLightThroughThings) {
   }
 }
 
+TEST(Recursion, PaintsPatternsThatAreCarriedWithTheirShapes) {
+  SceneDescription description = small_scene();
+  description.render.antialias = {Antialiasing::Method::none, 1};
+  NoisePattern noise;
+  noise.size = 0.2;
+  CheckerPattern checker;
+  checker.size = 0.2;
+  MaterialDescription carried;
+  carried.name = "carried", carried.diffuse = noise, carried.ambient = checker, carried.bump = BumpDescription{};
+  description.materials.push_back(carried);
+  ShapeDescription ball;
+  ball.material = "carried", ball.kind = SphereShape{};
+  ball.transform.scale(Vec3d(0.5));
+  ball.transform.rotate(Vec3d(1, 2, 3));
+  ShapeDescription use;
+  use.kind = InstanceShape{"balls"};
+  use.transform.translate(Vec3d(0.5, 1, 0));
+  use.transform.rotate(Vec3d(0, 1, 0));
+  description.groups.push_back({"balls", {ball}, {}});
+  description.shapes.push_back(use);
+  const Scene scene = prepared(std::move(description));
+  ASSERT_FALSE(scene.object_spaces.empty());
+  EXPECT_EQ(picture_mismatch(render_recursively(scene, embree_of(scene), 2), render(scene, RenderOptions())), "");
+}
+
 TEST(Recursion, AMismatchIsSeen) {
   const Scene scene = prepared(small_scene());
   const RenderResult rendered = render(scene, RenderOptions());

@@ -109,15 +109,18 @@ TEST_P(BatchShading, EqualsOneHitAfterTheOther) {
     }
     shading->turn_to_rays(rays);
     const auto one = [&](std::size_t i) {
+      const Material& material = scene.materials[scene.material_at(hits[i])];
+      const std::optional<ObjectFrame> frame = scene.frame_at(hits[i], material);
       return shading_point(surface_at(*scene.shapes, rays.origin(i), rays.direction(i), hits[i], true),
-                           rays.direction(i), scene.materials[scene.material_at(hits[i])]);
+                           rays.direction(i), material, {}, frame ? &*frame : nullptr);
     };
     for (std::size_t i = 0; i < rays.size; ++i) {
       if (hits.geometry[i] == kNoGeometry) continue;
       shading->set_material(i, scene.materials[scene.material_at(hits[i])]);
       ShadingPoint point = shading->point(rays, i);
       if (!point.material->is_varied) continue;
-      vary(point, {});
+      const std::optional<ObjectFrame> frame = scene.frame_at(hits[i], *point.material);
+      vary(point, {}, frame ? &*frame : nullptr);
       shading->set_varied(i, point);
     }
     shading->branch(rays);

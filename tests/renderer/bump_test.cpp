@@ -45,7 +45,8 @@ TEST(Bump, GradientsAreThoseOfCentralDifferences) {
       const auto rounded = [&] { return static_cast<float>(std::round(number(-3, 3) * 4096) / 4096); };
       const Vec3f place(rounded(), rounded(), rounded());
       constexpr float kStep = 0x1p-14f;
-      const Vec3d gradient = bump.height(place, 0).gradient;
+      const auto height = [&](const Vec3f& at) { return bump.height(Vec3d(at) - description.offset, 0); };
+      const Vec3d gradient = height(place).gradient;
       // h^2 / 6 times third derivatives of up to 4 x 500 (2 / kCreaseWidth)^2 / size^3 for ridges, (2 pi / size)^3 for
       // waves.
       const double third = kind == BumpDescription::Kind::wrinkles ? 4000 * 4 / (kCreaseWidth * kCreaseWidth) : 4000;
@@ -55,7 +56,7 @@ TEST(Bump, GradientsAreThoseOfCentralDifferences) {
       for (int axis = 0; axis < 3; ++axis) {
         Vec3f low = place, high = place;
         low[axis] -= kStep, high[axis] += kStep;
-        EXPECT_NEAR(gradient[axis], (bump.height(high, 0).value - bump.height(low, 0).value) / (2 * kStep), tolerance)
+        EXPECT_NEAR(gradient[axis], (height(high).value - height(low).value) / (2 * kStep), tolerance)
             << static_cast<int>(kind);
       }
     }
@@ -158,7 +159,7 @@ TEST(Bump, NoNormalLeavesItsSideOrTheViewersSide) {
       if (normal.dot(side) < 0) normal = -normal;
       if (to_viewer.dot(side) < 0) to_viewer = -to_viewer;
       const Vec3f place(static_cast<float>(number(-3, 3)), static_cast<float>(number(-3, 3)), 0);
-      const Vec3f bent = bump.bent(Vec3f(normal), Vec3f(side), Vec3f(to_viewer), i % 2 == 1, place, 0);
+      const Vec3f bent = bump.bent(Vec3f(normal), Vec3f(side), Vec3f(to_viewer), i % 2 == 1, place, {}, nullptr);
       // Both additions together at most double the length.
       const float least = kLeastFacing / 2 * (1 - 1e-3f);
       ASSERT_GE(bent.dot(Vec3f(side)), least);

@@ -158,10 +158,11 @@ double rms(const Film& film, const Film& mean) {
 /// off by half the second derivative over half a pixel, L / (4 y), or by as much as tells cells apart, 1. An end that
 /// is off by e changes the mean by at most e / (2 L) either way; two ends, independent, and as much again for the
 /// sides.
-double parallelogram_error(double f, int rows) {
+/// `cell`: the larger edge of a cell.
+double parallelogram_error(double f, int rows, double cell = 1) {
   double squares = 0;
   for (int row = 0; row < rows; ++row) {
-    const double y = row + 0.5, error = std::min(1 / (4 * y), y * y / f);
+    const double y = row + 0.5, error = std::min(1 / (4 * y), cell * y * y / f);
     squares += 4 * error * error / 4;
   }
   return std::sqrt(squares / rows);
@@ -201,6 +202,45 @@ TEST(Pattern, OneFilteredSampleAPixelIsTheMeanOfWhatThePixelCovers) {
           << filtered.index() << " turned " << turn;
       EXPECT_GE(bare_error, 4 * error) << filtered.index() << " turned " << turn;
     }
+}
+
+TEST(Pattern, TheMeanIsThatOfTheCellsAsTheShapesTransformStretchesThem) {
+  Matrix44d turned;
+  turned.rotate(Vec3d(0, 0.7, 0));
+  CheckerPattern checker = black_and_white<CheckerPattern>();
+  const auto traced = [&](bool filtered, const Antialiasing& antialias) {
+    checker.filtered = filtered;
+    SceneDescription scene = floor_scene(checker, 0.4, antialias);
+    scene.shapes[0].transform = scaling({1.5, 1, 0.5}) * turned * translation({0.2, 0, 0.3});
+    return rendered(std::move(scene));
+  };
+  const Antialiasing one{Antialiasing::Method::none, 1}, many{Antialiasing::Method::grid, 24};
+  const RenderResult mean = traced(false, many);
+  const double error = rms(traced(true, one).film, mean.film), bare_error = rms(traced(false, one).film, mean.film);
+  RecordProperty("filtered", std::to_string(error));
+  RecordProperty("point", std::to_string(bare_error));
+  // The grid's own mean: twice as many edges as of square cells at most.
+  EXPECT_LE(error, parallelogram_error(24 / std::tan(kPi / 6), 38, 1.5) + 2.0 / 300);
+  EXPECT_GE(bare_error, 4 * error);
+}
+
+TEST(Pattern, ScaledWithItsShapeItIsAPatternOfThatSize) {
+  // Noise fades by the window's width in the shape's own space; factors of two change no digit.
+  NoisePattern noise;
+  CheckerPattern checker = black_and_white<CheckerPattern>();
+  for (const auto& [small, large] : {std::pair<ColorPattern, ColorPattern>{noise, noise}, {checker, checker}}) {
+    ColorPattern scaled = large;
+    std::visit(
+        []<class T>(T& pattern) {
+          if constexpr (!std::same_as<T, Rgb>) pattern.size = 4;
+        },
+        scaled);
+    SceneDescription scene = floor_scene(small, 0.3, {Antialiasing::Method::none, 1});
+    scene.shapes[0].transform = scaling(Vec3d(4));
+    const RenderResult moved = rendered(std::move(scene)),
+                       described = rendered(floor_scene(scaled, 0.3, {Antialiasing::Method::none, 1}));
+    EXPECT_EQ(differing_pixels(moved.film, described.film), 0u);
+  }
 }
 
 TEST(Pattern, FilteredNoiseIsCalmInTheDistance) {

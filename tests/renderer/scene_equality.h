@@ -63,9 +63,9 @@ inline bool equal(const SpotLight& a, const SpotLight& b) {
          falloff == b.falloff && least_distance == b.least_distance;
 }
 inline bool equal(const CheckerPattern& a, const CheckerPattern& b) {
-  const auto& [even, odd, size, plane, offset, filtered] = a;
-  return even == b.even && odd == b.odd && size == b.size && plane == b.plane && offset == b.offset &&
-         filtered == b.filtered;
+  const auto& [even, odd, size, plane, space, offset, filtered] = a;
+  return even == b.even && odd == b.odd && size == b.size && plane == b.plane && space == b.space &&
+         offset == b.offset && filtered == b.filtered;
 }
 inline bool equal(const StripesPattern& a, const StripesPattern& b) {
   const auto& [even, odd, size, direction, smooth, space, offset, filtered] = a;
@@ -78,9 +78,9 @@ inline bool equal(const NoisePattern& a, const NoisePattern& b) {
          contrast == b.contrast && seed == b.seed && space == b.space && offset == b.offset && filtered == b.filtered;
 }
 inline bool equal(const BumpDescription& a, const BumpDescription& b) {
-  const auto& [kind, amplitude, size, octaves, gain, seed, offset, direction] = a;
+  const auto& [kind, amplitude, size, octaves, gain, seed, offset, direction, space] = a;
   return kind == b.kind && amplitude == b.amplitude && size == b.size && octaves == b.octaves && gain == b.gain &&
-         seed == b.seed && offset == b.offset && direction == b.direction;
+         seed == b.seed && offset == b.offset && direction == b.direction && space == b.space;
 }
 inline bool equal(const HighlightDescription& a, const HighlightDescription& b) {
   const auto& [weight, exponent, table] = a;

@@ -40,10 +40,10 @@ TEST(SceneFields, TablesHoldEveryMember) {
   EXPECT_EQ(count(PointLight{}), 3);
   EXPECT_EQ(count(SpotLight{}), 6);
   EXPECT_EQ(count(LightDescription{}), 3 - 1) << "without name";
-  EXPECT_EQ(count(CheckerPattern{}), 6);
+  EXPECT_EQ(count(CheckerPattern{}), 7);
   EXPECT_EQ(count(StripesPattern{}), 8);
   EXPECT_EQ(count(NoisePattern{}), 10);
-  EXPECT_EQ(count(BumpDescription{}), 8);
+  EXPECT_EQ(count(BumpDescription{}), 9);
   EXPECT_EQ(count(AngleWeight{}), 2);
   EXPECT_EQ(count(HighlightDescription{}), 3);
   EXPECT_EQ(count(MaterialDescription{}), 15 - 1 + 1) << "without name, with \"from\"";

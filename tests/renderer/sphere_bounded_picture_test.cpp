@@ -9,7 +9,7 @@
 #include "geometry/mesh_source.h"
 #include "renderer/builtin_scenes.h"
 #include "tests/geometry/subdivision_cages.h"
-#include "tests/patch_samples.h"
+#include "tests/renderer/patch_shapes.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree {
@@ -49,20 +49,6 @@ float contrast(const Film& film, int x, int y) {
 
 /// Of a display's 255.
 constexpr float kLevel = 1 / 255.0f;
-
-/// The unit sphere of rational patches.
-PatchesShape round_patches() {
-  PatchesShape kind;
-  for (const BezierPatch& patch : sphere_patches()) {
-    auto& indices = kind.bezier.emplace_back();
-    for (std::size_t i = 0; i < 16; ++i) {
-      indices[i] = static_cast<std::uint32_t>(kind.positions.size());
-      kind.positions.push_back(patch.points[i]);
-      kind.weights.push_back(patch.weights[i]);
-    }
-  }
-  return kind;
-}
 
 ShapeDescription cube_limit(const std::string& material_name) {
   ShapeDescription result = mesh_shape(std::make_shared<PolygonMesh>(cube_cage()), material_name);
