@@ -1,8 +1,11 @@
-// What the page of the stability suite shows.
+// What the page of the stability suite shows: every case has a picture or a graph, or is named here as one that has
+// nothing to see and says so.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 
 #include "benchmarks/stability/case_pictures.h"
@@ -12,6 +15,55 @@
 
 namespace raytree::benchmarks {
 namespace {
+
+/// Cases without a picture; each says why on the page.
+const std::set<std::string> kNothingToSee = {"wide-box", "bad-topology", "denormals"};
+
+bool shows_one_color(const DisplayImage& image) {
+  return std::all_of(std::begin(image.planes), std::end(image.planes), [](const std::vector<std::uint8_t>& plane) {
+    return std::all_of(plane.begin(), plane.end(), [&](std::uint8_t value) { return value == plane[0]; });
+  });
+}
+
+TEST(StabilityPictures, EveryCaseHasOneOrSaysThatThereIsNothingToSee) {
+  StabilityOptions options;
+  options.run.effort = kLeastEffort;
+  const StabilityReport report = run_stability(stability_cases(), options);
+  ASSERT_EQ(report.entries.size(), stability_cases().size());
+  std::set<std::string> nothing_to_see;
+  for (const StabilityEntry& entry : report.entries) {
+    const StabilityResult& result = entry.result;
+    SCOPED_TRACE(entry.grouped.what.name);
+    EXPECT_EQ(entry.error, "");
+    std::set<std::string> captions;
+    std::size_t plain = 0;
+    for (const StabilityPicture& picture : result.pictures) {
+      EXPECT_TRUE(captions.insert(picture.caption).second) << "twice: " << picture.caption;
+      EXPECT_GE(picture.magnified, 1);
+      plain += shows_one_color(picture.image);
+      for (const auto& plane : picture.image.planes)
+        EXPECT_EQ(plane.size(),
+                  static_cast<std::size_t>(picture.image.width) * static_cast<std::size_t>(picture.image.height));
+    }
+    // A remedy may leave nothing but paper; a failure may not.
+    EXPECT_LE(plain, result.pictures.empty() ? 0 : result.pictures.size() - 1);
+    for (const StabilityGraph& graph : result.graphs) EXPECT_NE(graph_svg(graph), "") << graph.title;
+    if (result.graphs.empty() && !result.pictures.empty()) {
+      EXPECT_GE(result.pictures.size(), 2u) << "a failure beside what?";
+    }
+    const bool shows = !result.pictures.empty() || !result.graphs.empty();
+    EXPECT_NE(shows, !result.nothing_to_see.empty());
+    if (!shows) nothing_to_see.insert(entry.grouped.what.name);
+  }
+  EXPECT_EQ(nothing_to_see, kNothingToSee);
+  const std::string page = stability_page(report);
+  EXPECT_LT(page.size(), 8u << 20) << "bytes of a page that is sent around";
+  std::size_t said = 0;
+  for (std::size_t at = page.find("Nothing to see: "); at != std::string::npos;
+       at = page.find("Nothing to see: ", at + 1))
+    ++said;
+  EXPECT_EQ(said, kNothingToSee.size());
+}
 
 TEST(StabilityPictures, MagnifiedOnesKeepHardPixels) {
   StabilityReport report;
