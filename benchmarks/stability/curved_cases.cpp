@@ -5,6 +5,7 @@
 #include <random>
 
 #include "benchmarks/samples/patches.h"
+#include "benchmarks/stability/case_pictures.h"
 #include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/curved_parts.h"
 #include "geometry/angle.h"
@@ -106,6 +107,25 @@ std::vector<Vec3d> points_on_edges(const TriangleMesh& mesh, int count) {
   return points;
 }
 
+/// The equator from inside, from north of it: facets by how they face the eye, orange where a ray leaves.
+StabilityPicture equator_picture(std::string caption, const EmbreeIntersector& tracer, const ShapeSet& shapes) {
+  constexpr int kWidth = 200, kHeight = 70;
+  constexpr double kPixel = 0.0035;  // of the view's distance
+  const Vec3d eye(0, 0.6, 0), ahead = unit(Vec3d(1, 0, 1) * (0.98 / std::sqrt(2.0)) - eye),
+                              right = unit(ahead.cross(Vec3d(0, 1, 0))), up = right.cross(ahead);
+  return painted_picture(
+      std::move(caption), kWidth, kHeight,
+      [&](int x, int y) {
+        const Vec3f origin(eye), direction(unit(ahead + right * ((x + 0.5 - kWidth / 2.0) * kPixel) +
+                                                up * ((kHeight / 2.0 - y - 0.5) * kPixel)));
+        const Hit hit = tracer.intersect_one(origin, direction, kInfinity);
+        if (hit.geometry == kNoGeometry) return kFaultColor;
+        const Vec3f normal = surface_at(shapes, origin, direction, hit, false).geometric_normal;
+        return gray(0.5 * std::pow(std::abs(double(normal.dot(direction))), 4));
+      },
+      2);
+}
+
 StabilityResult uneven_rates(const StabilityRun& run) {
   StabilityResult result;
   const ShapeSet apart = uneven_sphere(false), shared = uneven_sphere(true);
@@ -121,6 +141,11 @@ StabilityResult uneven_rates(const StabilityRun& run) {
   result.figures.push_back(held("points of an edge shared", "rays at edges that leave",
                                 escaped(shared_tracer, points_on_edges(shared.meshes[0].mesh, count), 0), 0, 2e-5,
                                 "0; embree_verify allows 2e-5. Without robust mode 1e-1"));
+  if (run.pictures) {
+    result.pictures.push_back(
+        equator_picture("Each side by itself, from inside: gaps along the equator (orange)", apart_tracer, apart));
+    result.pictures.push_back(equator_picture("Points of the edge shared: closed", shared_tracer, shared));
+  }
   return result;
 }
 
@@ -144,6 +169,28 @@ double distance_to(const BezierPatch& patch, const Vec3d& point) {
     u = next_u, v = next_v, width /= round == 0 ? 30 : 2.5;
   }
   return best;
+}
+
+/// A patch seen along z, gray by depth where its facets and its spheres agree, orange where the spheres alone are met.
+StabilityPicture sphere_picture(std::string caption, const BezierPatch& patch, double radius,
+                                const EmbreeIntersector& facets) {
+  constexpr int kSize = 110;
+  const BoundingSphere sphere = sphere_about(patch);
+  return painted_picture(
+      std::move(caption), kSize, kSize,
+      [&](int x, int y) {
+        const double pixel = 1.2 * sphere.radius / kSize;
+        const Vec3d from =
+            sphere.center + Vec3d((x + 0.5 - kSize / 2.0) * pixel, (kSize / 2.0 - y - 0.5) * pixel, 2 * sphere.radius);
+        const SphereRay ray(from, {0, 0, -1});
+        PatchHit hit;
+        const bool is_met = intersect_patch(patch, ray, sphere.inside(ray), std::numeric_limits<double>::infinity(),
+                                            {kUnitPixel, radius}, hit);
+        const bool is_hit = facets.intersect_one(Vec3f(from), {0, 0, -1}, kInfinity).geometry != kNoGeometry;
+        if (is_met != is_hit) return is_met ? kFaultColor : kPaperColor;
+        return is_met ? gray(std::clamp(0.8 - 0.22 * (hit.distance / sphere.radius - 1) / 0.5, 0.08, 0.8)) : kDarkColor;
+      },
+      2);
 }
 
 StabilityResult patch_spheres(const StabilityRun& run) {
@@ -203,6 +250,16 @@ StabilityResult patch_spheres(const StabilityRun& run) {
     levels_off = std::max(levels_off, found ? std::abs(hit.level - levels) : 99);
   }
   result.figures.push_back(held("spheres about parts", "divisions less log2(R / r), 0 to 19", levels_off, 0, 0, "0"));
+  if (run.pictures) {
+    std::mt19937 shown(66);
+    const BezierPatch patch = random_patch(shown, false);
+    const LitTriangles cut = cut_patches({patch}, 96, 96, DegenerateNormal::limit);
+    const EmbreeIntersector facets(cut.shapes, run.tracer_options());
+    for (const auto& [caption, parts] :
+         {std::pair("Least radius 1/16 of the patch's: outlines grow by up to two of them (orange)", 16),
+          {"1/200 of it: by a pixel here and there", 200}})
+      result.pictures.push_back(sphere_picture(caption, patch, sphere_about(patch).radius / parts, facets));
+  }
   return result;
 }
 

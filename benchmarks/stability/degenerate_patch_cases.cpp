@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "benchmarks/samples/patches.h"
+#include "benchmarks/stability/case_pictures.h"
 #include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/curved_parts.h"
 #include "geometry/angle.h"
@@ -52,7 +53,19 @@ void add_held(StabilityResult& result, const char* method, const char* where, co
                                 0, kRounding, "0 but for rounding"));
 }
 
-StabilityResult collapsed_edge(const StabilityRun&) {
+/// Patches of few facets in light from the side, with normals of each of the methods at the corners.
+struct MethodShown {
+  const char* caption;
+  DegenerateNormal method;
+};
+void add_patch_pictures(StabilityResult& result, const StabilityRun& run, const std::vector<BezierPatch>& patches,
+                        int along, int across, const ParallelView& view, std::initializer_list<MethodShown> shown) {
+  if (!run.pictures) return;
+  for (const auto& [caption, method] : shown)
+    result.pictures.push_back(lit_picture(run, caption, cut_patches(patches, along, across, method), view));
+}
+
+StabilityResult collapsed_edge(const StabilityRun& run) {
   StabilityResult result;
   const std::vector<BezierCurve> profile{straight({1, 0, 0}, {0, 1, 0})};
   const BezierPatch cone = revolve(profile)[0], octant = sphere_patches()[4];
@@ -76,6 +89,12 @@ StabilityResult collapsed_edge(const StabilityRun&) {
            outcome(cone, DegenerateNormal::first_order, tip, around));
   add_held(result, "limit by power series", "tip of a cone", outcome(cone, DegenerateNormal::limit, tip, around));
   add_held(result, "limit by power series", "pole of a sphere", outcome(octant, DegenerateNormal::limit, tip, up));
+  ParallelView view;
+  view.middle = {0, 0.4, 0}, view.toward = {0.2, 0.9, 1}, view.to_light = {1, 0.9, 0.4};
+  add_patch_pictures(result, run, revolve(profile), 4, 2, view,
+                     {{"P_u x P_v: no normal at the tip, no light about it (orange)", DegenerateNormal::none},
+                      {"Gouraud's: one normal a quarter, seams between them", DegenerateNormal::gouraud},
+                      {"limit by power series: a cone", DegenerateNormal::limit}});
   return result;
 }
 
@@ -100,7 +119,7 @@ BezierPatch cusp() {
   return patch_of_monomials(a);
 }
 
-StabilityResult tangent_boundaries(const StabilityRun&) {
+StabilityResult tangent_boundaries(const StabilityRun& run) {
   StabilityResult result;
   const auto tip = [](double t) { return Vec2d(0, t); };
   const auto up = [](double) { return Vec3d(0, 0, 1); };
@@ -116,10 +135,19 @@ StabilityResult tangent_boundaries(const StabilityRun&) {
   add_held(result, "limit by power series", "boundaries in one line",
            outcome(bowl(), DegenerateNormal::limit, tip, up));
   add_held(result, "limit by power series", "a cusp", outcome(cusp(), DegenerateNormal::limit, tip, leaning));
+  ParallelView view;
+  view.middle = {0, 0.3, 0.3}, view.toward = {0.2, -1, 1.4}, view.to_light = {0.8, -0.3, 1};
+  add_patch_pictures(result, run, {bowl()}, 4, 12, view,
+                     {{"Half a bowl, Gouraud's boundaries: no light at the tip", DegenerateNormal::gouraud},
+                      {"Limit by power series", DegenerateNormal::limit}});
+  view.middle = {0.5, 0, 0.8}, view.toward = {-1, 0.5, 1}, view.to_light = {-0.3, 0.4, 1};
+  add_patch_pictures(result, run, {cusp()}, 4, 4, view,
+                     {{"A cusp, first order as OpenSubdiv: no light at the tip", DegenerateNormal::first_order},
+                      {"Limit by power series: lit to the tip", DegenerateNormal::limit}});
   return result;
 }
 
-StabilityResult parallel_partials(const StabilityRun&) {
+StabilityResult parallel_partials(const StabilityRun& run) {
   StabilityResult result;
   // x = u + v, y = v^2 - u^2, z = x + y: a plane with normal (-1, -1, 1).
   Monomials a = no_monomials();
@@ -135,6 +163,13 @@ StabilityResult parallel_partials(const StabilityRun&) {
       finds_none("Gouraud's boundaries", where, outcome(patch, DegenerateNormal::gouraud, corner, truth)));
   add_held(result, "first order, as OpenSubdiv", where, outcome(patch, DegenerateNormal::first_order, corner, truth));
   add_held(result, "limit by power series", where, outcome(patch, DegenerateNormal::limit, corner, truth));
+  ParallelView view;
+  view.middle = {1, 0, 1}, view.toward = {-1, -1, 1}, view.to_light = {-1, 0.6, 1}, view.window = 3.2;
+  add_patch_pictures(
+      result, run, {patch}, 4, 4, view,
+      {{"P_u x P_v, and Gouraud's: no light in the corner of a plane (orange)", DegenerateNormal::gouraud},
+       {"First order, as OpenSubdiv", DegenerateNormal::first_order},
+       {"Limit by power series", DegenerateNormal::limit}});
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "benchmarks/stability/case_pictures.h"
 #include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/facet_cases.h"
 #include "benchmarks/stability/faceted_scenes.h"
@@ -109,23 +110,49 @@ StabilityResult crooked_quad(const StabilityRun& run) {
   return result;
 }
 
+/// Normals of a square's corners, once around from the lower left: each is opposite to that across.
+const Vec3f kCancelingNormals[4] = {{0.6f, 0, 0.8f}, {0, 1, 0}, {-0.6f, 0, -0.8f}, {0, -1, 0}};
+/// Pixels each way: in the middle one, where the diagonals cross, normals cancel in every way of interpolating.
+constexpr int kCancelingSize = 33;
+constexpr double kCancelingWindow = 2.2;
+
+SceneDescription canceling_quad(ShadingMethod shading, FacetInterpolation interpolation) {
+  auto mesh = std::make_shared<PolygonMesh>();
+  mesh->positions.assign({Vec3f(-1, -1, 0), Vec3f(1, -1, 0), Vec3f(1, 1, 0), Vec3f(-1, 1, 0)});
+  mesh->normals.assign(std::begin(kCancelingNormals), std::end(kCancelingNormals));
+  mesh->face_sizes.push_back(4);
+  mesh->corners.assign({0, 1, 2, 3});
+  ShapeDescription quad = painted_mesh(std::move(mesh), NormalSource::file);
+  quad.shading = shading;
+  quad.interpolation = interpolation;
+  return highlit_scene(std::move(quad), kCancelingSize, kCancelingSize, kCancelingWindow, 20);
+}
+
+/// The same square by n / |n| as it stands: bilinear, in single precision.
+StabilityPicture canceled_picture() {
+  return painted_picture(
+      "n / |n| as it stands: no number in the middle pixel (orange)", kCancelingSize, kCancelingSize,
+      [](int x, int y) {
+        constexpr float pixel = float(kCancelingWindow / kCancelingSize);
+        const float u = 0.5f + (float(x) - kCancelingSize / 2) * pixel / 2;
+        const float v = 0.5f - (float(y) - kCancelingSize / 2) * pixel / 2;
+        if (u < 0 || u > 1 || v < 0 || v > 1) return gray(0);
+        const Vec3f n = (kCancelingNormals[0] * (1 - u) + kCancelingNormals[1] * u) * (1 - v) +
+                        (kCancelingNormals[3] * (1 - u) + kCancelingNormals[2] * u) * v;
+        const float cosine = n.z / n.length();
+        return std::isfinite(cosine) ? gray(std::max(0.0f, cosine)) : kFaultColor;
+      },
+      6);
+}
+
 StabilityResult canceling_normals(const StabilityRun& run) {
   std::size_t not_finite = 0, pixels = 0;
   StabilityResult result;
-  // In the middle of the picture, where the diagonals cross, normals cancel in every way of interpolating.
-  const int size = 33;
+  constexpr int size = kCancelingSize;
   for (const auto& shading : EnumTable<ShadingMethod>::entries)
     for (const auto& interpolation : EnumTable<FacetInterpolation>::entries)
       for (const auto& reflections : EnumTable<FacetReflections>::entries) {
-        auto mesh = std::make_shared<PolygonMesh>();
-        mesh->positions.assign({Vec3f(-1, -1, 0), Vec3f(1, -1, 0), Vec3f(1, 1, 0), Vec3f(-1, 1, 0)});
-        mesh->normals.assign({Vec3f(0.6f, 0, 0.8f), Vec3f(0, 1, 0), Vec3f(-0.6f, 0, -0.8f), Vec3f(0, -1, 0)});
-        mesh->face_sizes.push_back(4);
-        mesh->corners.assign({0, 1, 2, 3});
-        ShapeDescription quad = painted_mesh(std::move(mesh), NormalSource::file);
-        quad.shading = shading.value;
-        quad.interpolation = interpolation.value;
-        SceneDescription scene = highlit_scene(std::move(quad), size, size, 2.2, 20);
+        SceneDescription scene = canceling_quad(shading.value, interpolation.value);
         scene.materials[0].reflection = Rgb(0.5f);
         scene.materials[0].diffuse = Rgb(0.5f);
         scene.render.depth = 4;
@@ -142,13 +169,22 @@ StabilityResult canceling_normals(const StabilityRun& run) {
         pixels += std::size_t(size) * std::size_t(size);
       }
   // What n / |n| would be there.
-  const Vec3f canceled = (Vec3f(0.6f, 0, 0.8f) + Vec3f(-0.6f, 0, -0.8f)) * 0.5f;
+  const Vec3f canceled = (kCancelingNormals[0] + kCancelingNormals[2]) * 0.5f;
   result.figures = {predicted_figure("n / |n| as it stands", "not finite in the middle, of 1",
                                      std::isfinite(canceled.x / canceled.length()) ? 0 : 1, 1, 0, "1: 0 / 0",
                                      StabilityExpectation::fails_as_known),
                     predicted_figure("every shading, interpolation and reflection",
                                      fmt::format("values that are not finite, of {} pixels", pixels),
                                      double(not_finite), 0, 0, "0", StabilityExpectation::holds)};
+  if (run.pictures) {
+    result.pictures.push_back(canceled_picture());
+    SceneDescription scene = canceling_quad(ShadingMethod::phong, FacetInterpolation::bilinear);
+    scene.materials[0].highlight.weight = Rgb(0);
+    scene.materials[0].diffuse = Rgb(1);
+    StabilityPicture rendered = stability_picture("The facet's own normal there", film_of(std::move(scene), run));
+    rendered.magnified = 6;
+    result.pictures.push_back(std::move(rendered));
+  }
   return result;
 }
 

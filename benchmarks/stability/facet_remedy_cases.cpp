@@ -155,19 +155,44 @@ StabilityResult shadow_terminator(const StabilityRun& run) {
   return result;
 }
 
+/// To a lamp behind the sheet, on the side that its normals lean to.
+const Vec3d kLightBehind = Vec3d(1, 0, -0.5).normalized();
+
+/// Color and normals of a sheet across the view, lit from behind; its normals are `left` on its left side.
+Film sheet_film(ShadingMethod method, const Vec3f& left, int size, const StabilityRun& run) {
+  auto mesh = flat_grid(1, 2);
+  mesh->normals.assign(4, Vec3f(Vec3d(0.8, 0, 0.6)));
+  mesh->normals[0] = mesh->normals[2] = left;
+  ShapeDescription sheet = painted_mesh(std::move(mesh), NormalSource::file);
+  sheet.shading = method;
+  SceneDescription scene = headlit_scene(std::move(sheet), size, size, 1.9);
+  scene.lights = {sunlight(-kLightBehind)};
+  return film_of(std::move(scene), run, {ChannelGroup::color, ChannelGroup::normal});
+}
+
+/// The same sheet, its normals upright on the left, by N.L alone and as it is rendered; and a little light all over.
+void add_sheet_pictures(StabilityResult& result, const StabilityRun& run) {
+  if (!run.pictures) return;
+  constexpr int kSize = 180;
+  constexpr float kFaint = 0.02f;
+  const Film film = sheet_film(ShadingMethod::phong, Vec3f(0, 0, 1), kSize, run);
+  std::vector<float> by_normal, by_facet;
+  for (std::size_t i = 0; i < std::size_t(kSize * kSize); ++i) {
+    const double cosine = film.plane(ChannelGroup::normal, 0)[i] * kLightBehind.x +
+                          film.plane(ChannelGroup::normal, 2)[i] * kLightBehind.z;
+    by_normal.push_back(kFaint + static_cast<float>(std::max(0.0, cosine)));
+    by_facet.push_back(kFaint + film.plane(ChannelGroup::color, 1)[i]);
+  }
+  add_gray_picture(result, run, "By the interpolated normal alone: the lamp behind shines through where normals lean",
+                   by_normal, kSize, kSize);
+  add_gray_picture(result, run, "By the facet's side too: dark, as a sheet is that is lit from behind", by_facet, kSize,
+                   kSize);
+}
+
 StabilityResult light_from_behind(const StabilityRun& run) {
   StabilityResult result;
   const int size = 20;
-  const Vec3d to_light = Vec3d(1, 0, -0.5).normalized();  // behind the sheet, on the side that its normals lean to
-  const auto film = [&](ShadingMethod method) {
-    auto mesh = flat_grid(1, 2);
-    mesh->normals.assign(4, Vec3f(Vec3d(0.8, 0, 0.6)));
-    ShapeDescription sheet = painted_mesh(std::move(mesh), NormalSource::file);
-    sheet.shading = method;
-    SceneDescription scene = headlit_scene(std::move(sheet), size, size, 1.9);
-    scene.lights = {sunlight(-to_light)};
-    return film_of(std::move(scene), run, {ChannelGroup::color, ChannelGroup::normal});
-  };
+  const auto film = [&](ShadingMethod method) { return sheet_film(method, Vec3f(0.8f, 0, 0.6f), size, run); };
   const auto share = [&](auto&& counts) {
     int count = 0;
     for (std::size_t i = 0; i < std::size_t(size * size); ++i) count += counts(i);
@@ -176,7 +201,8 @@ StabilityResult light_from_behind(const StabilityRun& run) {
   const char* quantity = "share of a sheet that is lit from behind";
   const Film phong = film(ShadingMethod::phong);
   const auto by_normal_alone = [&](std::size_t i) {
-    return phong.plane(ChannelGroup::normal, 0)[i] * to_light.x + phong.plane(ChannelGroup::normal, 2)[i] * to_light.z >
+    return phong.plane(ChannelGroup::normal, 0)[i] * kLightBehind.x +
+               phong.plane(ChannelGroup::normal, 2)[i] * kLightBehind.z >
            0;
   };
   result.figures.push_back({"interpolated normal alone", quantity, share(by_normal_alone), 1, 1,
@@ -188,6 +214,7 @@ StabilityResult light_from_behind(const StabilityRun& run) {
     result.figures.push_back(
         {fmt::format("{}, facet's side too", name), quantity, share(is_lit), 0, 0, "0", StabilityExpectation::holds});
   }
+  add_sheet_pictures(result, run);
   return result;
 }
 

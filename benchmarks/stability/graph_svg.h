@@ -7,8 +7,8 @@
 
 namespace raytree::benchmarks {
 
-/// An <svg> element; both axes logarithmic, a tick at each decade of y and each x that a line has. Empty where no point
-/// can be drawn.
+/// An <svg> element. Ticks stand at whole decades of a logarithmic axis (of x at the lines' own places where those are
+/// few), at round steps of a linear one. Empty where no point can be drawn.
 std::string graph_svg(const StabilityGraph& graph);
 
 }  // namespace raytree::benchmarks

@@ -202,8 +202,48 @@ StabilityResult prism_flicker(const StabilityRun& run) {
   return result;
 }
 
+/// A facet faces the viewer.
+double facing_facet(int sides) { return 180.0 / sides - 90; }
+
+/// Largest error of the method's formula for (N.L)^exponent at those places, of 1.
+double predicted_error(ShadingMethod method, int sides, double exponent, const std::vector<double>& places) {
+  const FacetedCircle facets(sides, facing_facet(sides)), circle(0, 0);
+  // Where sides are few, hits beside the one that faces the viewer lie visibly off the circle, which is no fault of
+  // the shading.
+  const double reach = method == ShadingMethod::phong ? std::sin(kPi / sides) : 1;
+  double largest = 0;
+  for (const double x : places)
+    if (std::abs(x) < reach)
+      largest = std::max(largest, std::abs(facets.light(method, x, exponent) - circle.light(method, x, exponent)));
+  return largest;
+}
+
+/// The closed forms over the sides, and what all methods make of as many as Phong's needs.
+void show_sides_needed(StabilityResult& result, const StabilityRun& run, double exponent, StabilityGraph measured) {
+  StabilityGraph graph{"A highlight, n = 50, on a cylinder", "sides", "largest error, in 1/255", {}};
+  const std::vector<double> places = pixel_centers(1500, 1.6 / 1500);
+  std::vector<StabilityGraph::Line>::iterator dots = measured.lines.begin();
+  for (const auto& [name, method] :
+       {std::pair("flat", ShadingMethod::flat), {"Gouraud", ShadingMethod::gouraud}, {"Phong", ShadingMethod::phong}}) {
+    StabilityGraph::Line line{fmt::format("{}, closed form", name), {}, true};
+    const int most = method == ShadingMethod::flat ? 4096 : method == ShadingMethod::gouraud ? 1024 : 64;
+    for (int sides = 8; sides <= most; sides *= 2)
+      line.points.emplace_back(sides, 255 * predicted_error(method, sides, exponent, places));
+    graph.lines.push_back(std::move(*dots++));
+    graph.lines.push_back(std::move(line));
+    constexpr int kShown = 19;
+    SceneDescription scene =
+        highlit_scene(faceted_cylinder(kShown, method, facing_facet(kShown)), 180, 140, 1.4, exponent);
+    scene.materials[0].diffuse = Rgb(0.15f);
+    add_picture(result, run, fmt::format("{}, 19 sides", name), std::move(scene), 180, 140);
+  }
+  graph.lines.push_back({"1/255", {{8, 1}, {4096, 1}}, true});
+  result.graphs.push_back(std::move(graph));
+}
+
 StabilityResult sides_needed(const StabilityRun& run) {
   StabilityResult result;
+  StabilityGraph measured;
   constexpr double kExponent = 50, kWindow = 1.6;
   constexpr int kPixels = 6000;
   const std::vector<double> centers = pixel_centers(kPixels, kWindow / kPixels);
@@ -212,7 +252,6 @@ StabilityResult sides_needed(const StabilityRun& run) {
         highlit_scene(faceted_cylinder(sides, method, turned_degrees), kPixels, 1, kWindow / kPixels, kExponent), run);
   };
   const std::vector<float> exact = seen_of(ShadingMethod::limit, 0, 0);
-  const FacetedCircle circle(0, 0);
   const struct {
     const char* name;
     ShadingMethod method;
@@ -222,19 +261,12 @@ StabilityResult sides_needed(const StabilityRun& run) {
               {"Gouraud, 251 sides", ShadingMethod::gouraud, 251, kFailsAsKnown},
               {"Phong, 19 sides", ShadingMethod::phong, 19, kHolds}};
   for (const auto& row : rows) {
-    const double turned_degrees = 180.0 / row.sides - 90;  // a facet faces the viewer
-    const std::vector<float> seen = seen_of(row.method, row.sides, turned_degrees);
-    const FacetedCircle facets(row.sides, turned_degrees);
-    // Where sides are few, hits beside the one that faces the viewer lie visibly off the circle, which is no fault of
-    // the shading.
+    const std::vector<float> seen = seen_of(row.method, row.sides, facing_facet(row.sides));
     const double reach = row.method == ShadingMethod::phong ? std::sin(kPi / row.sides) : 1;
-    double largest = 0, predicted = 0;
-    for (std::size_t i = 0; i < centers.size(); ++i) {
-      if (std::abs(centers[i]) >= reach) continue;
-      largest = std::max(largest, std::abs(double(seen[i]) - double(exact[i])));
-      predicted = std::max(predicted, std::abs(facets.light(row.method, centers[i], kExponent) -
-                                               circle.light(row.method, centers[i], kExponent)));
-    }
+    const double predicted = predicted_error(row.method, row.sides, kExponent, centers);
+    double largest = 0;
+    for (std::size_t i = 0; i < centers.size(); ++i)
+      if (std::abs(centers[i]) < reach) largest = std::max(largest, std::abs(double(seen[i]) - double(exact[i])));
     StabilityFigure figure = predicted_figure(
         row.name, "largest error of a highlight, n = 50, in 1/255", 255 * largest, 255 * predicted,
         255 * 2 * float_error(kExponent),
@@ -242,7 +274,9 @@ StabilityResult sides_needed(const StabilityRun& run) {
     // As many as are said to be enough.
     figure.high = std::min(figure.high, 1 + 255 * 2 * float_error(kExponent));
     result.figures.push_back(std::move(figure));
+    measured.lines.push_back({row.name, {{row.sides, 255 * largest}}, false});
   }
+  if (run.pictures) show_sides_needed(result, run, kExponent, std::move(measured));
   return result;
 }
 

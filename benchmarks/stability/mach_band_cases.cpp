@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "benchmarks/stability/case_pictures.h"
 #include "benchmarks/stability/facet_cases.h"
 #include "benchmarks/stability/faceted_circle.h"
 #include "benchmarks/stability/faceted_scenes.h"
@@ -107,6 +108,28 @@ StabilityGraph mach_graph() {
           {}};
 }
 
+/// What the eye's center and surround make of 24 sides, about the middle of the cylinder: gray where nothing, brighter
+/// and darker by `gain` times log(light / truth).
+void add_response_picture(StabilityResult& result, const StabilityRun& run, std::string caption, ShadingMethod method,
+                          double gain) {
+  if (!run.pictures) return;
+  constexpr int kWidth = 620;
+  const std::vector<double> kernel = center_and_surround();
+  const FacetedCircle circle(0, 0);
+  std::vector<double> truth;
+  for (const double x : pixel_centers(kMachWidth, 1 / kMachRadius)) truth.push_back(circle.light(method, x, 1));
+  const std::vector<float> light =
+      green_of(headlit_scene(faceted_cylinder(24, method, -90), kMachWidth, 1, 1 / kMachRadius), run);
+  result.pictures.push_back(painted_picture(std::move(caption), kWidth, 60, [&](int x, int) {
+    double sum = 0;
+    for (int i = -kKernelReach; i <= kKernelReach; ++i) {
+      const auto at = static_cast<std::size_t>(x + (kMachWidth - kWidth) / 2 + i);
+      sum += kernel[static_cast<std::size_t>(i + kKernelReach)] * std::log(double(light[at]) / truth[at]);
+    }
+    return gray(std::pow(std::clamp(0.5 + gain * sum, 0.0, 1.0), 2));
+  }));
+}
+
 void add_cylinder_picture(StabilityResult& result, const StabilityRun& run, const char* caption, int sides,
                           ShadingMethod method) {
   add_picture(result, run, caption, headlit_scene(faceted_cylinder(sides, method, 90), 240, 180, 2.2), 240, 180);
@@ -134,6 +157,10 @@ StabilityResult flat_bands(const StabilityRun& run) {
                             StabilityExpectation::fails_as_known});
   add_cylinder_picture(result, run, "flat, 24 sides", 24, ShadingMethod::flat);
   add_cylinder_picture(result, run, "Phong, 24 sides", 24, ShadingMethod::phong);
+  for (const auto& [caption, method] :
+       {std::pair("What the eye's center and surround make of 24 flat sides, 15 times as strong", ShadingMethod::flat),
+        {"The same of Phong's", ShadingMethod::phong}})
+    add_response_picture(result, run, caption, method, 15);
   return result;
 }
 
@@ -146,6 +173,11 @@ StabilityResult slope_bands(const StabilityRun& run) {
                    "1: its normals turn evenly, but points of facets lie off the circle", run);
   add_cylinder_picture(result, run, "Gouraud, 12 sides", 12, ShadingMethod::gouraud);
   add_cylinder_picture(result, run, "Phong, 12 sides", 12, ShadingMethod::phong);
+  for (const auto& [caption, method] :
+       {std::pair("What the eye's center and surround make of 24 sides by Gouraud, 1000 times as strong",
+                  ShadingMethod::gouraud),
+        {"The same of Phong's", ShadingMethod::phong}})
+    add_response_picture(result, run, caption, method, 1000);
   return result;
 }
 

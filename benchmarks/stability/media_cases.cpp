@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "benchmarks/samples/scenes.h"
+#include "benchmarks/stability/case_pictures.h"
 #include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/ray_tree_parts.h"
 #include "renderer/media.h"
@@ -87,8 +88,13 @@ StabilityResult eye_in_glass_case(const StabilityRun& run) {
   const ExitErrors ours = exit_errors(rendered_for(run, eye_in_glass(size, kGlass)).film, kGlass);
   result.figures.push_back(held("side by the geometric normal", "sine that rays leave the glass off by",
                                 ours.compared > 0 ? ours.measured : NAN, 0, bound, "0 in Snell's law"));
-  add_picture(run, result, "The index of entering kept", eye_in_glass_picture(1 / kGlass));
-  add_picture(run, result, "The index adjusted to the side", eye_in_glass_picture(kGlass));
+  if (run.pictures) {
+    const Film entering = rendered_for(run, eye_in_glass_picture(1 / kGlass)).film,
+               adjusted = rendered_for(run, eye_in_glass_picture(kGlass)).film;
+    result.pictures.push_back(stability_picture("The index of entering kept: rays bend to the wrong side", entering));
+    result.pictures.push_back(stability_picture("The index adjusted to the side", adjusted));
+    result.pictures.push_back(difference_picture("Their difference", entering, adjusted, 1));
+  }
   return result;
 }
 
@@ -245,6 +251,17 @@ StabilityResult linear_attenuation(const StabilityRun& run) {
   result.figures.push_back(held("max(0, 1 - a t)", "least intensity of a corridor", lowest, 0, 0, "0"));
   result.figures.push_back(held("max(0, 1 - a t)", "intensity less its closed form", worst, 0, 32 * 0x1p-24,
                                 "0, roundings of t = 10 where it does not vanish"));
+  if (run.pictures) {
+    constexpr int kShown = 180;
+    const Film film = rendered_for(run, fading_corridor(kShown), {ChannelGroup::color, ChannelGroup::depth}).film;
+    result.pictures.push_back(painted_picture(
+        "1 - a t, as printed: less than no light in the distance (orange)", kShown, kShown, [&](int x, int y) {
+          const double t = 2 * double(film.plane(ChannelGroup::depth, 0)[pixel_index(film, x, y)]);
+          const double light = std::isfinite(t) ? 1 - kFade * t : 0;
+          return light < 0 ? scaled_color(kFaultColor, std::min(1.0, 0.2 - light)) : gray(light);
+        }));
+    result.pictures.push_back(stability_picture("max(0, 1 - a t): dark there", film));
+  }
   return result;
 }
 

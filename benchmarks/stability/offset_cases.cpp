@@ -36,11 +36,13 @@ struct LeavingSetting {
 constexpr LeavingSetting kLeavingSettings[] = {{1e-4, 0}, {1e-4, 1e-1}, {1e-2, 0}, {1e-2, 10}, {1, 0},     {1, 1e3},
                                                {1e2, 0},  {1e2, 1e5},   {1e4, 0},  {1e4, 1e3}, {1e4, 1e6}, {1, 3e4}};
 
+std::size_t leaving_triangles(const StabilityRun& run) { return probe_count(run, 300, 120); }
+
 /// For each method the largest share, over settings, of rays that meet the triangle that they leave.
 std::vector<double> false_self_hits(const StabilityRun& run, const std::vector<LeavingMethod>& methods) {
   ProbeRandom random(42);
   std::vector<double> worst(methods.size(), 0);
-  const std::size_t triangles = probe_count(run, 300, 120);
+  const std::size_t triangles = leaving_triangles(run);
   for (const LeavingSetting& setting : kLeavingSettings) {
     std::vector<Vec3f> corners;
     std::vector<ProbeRay> rays;
@@ -126,10 +128,14 @@ StabilityResult run_self_hits(const StabilityRun& run) {
       {"bound on the hit point's error, as the renderer has it", leaving_as_rendered(run)}};
   const std::vector<double> worst = false_self_hits(run, methods);
   const std::string quantity = "rays that meet the triangle they left, worst size and place";
+  // Four deviations of a half over the points of a setting; all rays of a point fare alike.
+  const double noise = 4 * std::sqrt(0.25 / double(leaving_triangles(run)));
   StabilityResult result;
   result.figures = {
-      known_failure(methods[0].name, quantity, worst[0], 0.1, 1, "0.5: half of all points lie behind their triangle"),
-      known_failure(methods[1].name, quantity, worst[1], 0.1, 1, "0.5 at 1e4 units or 1e6 from the origin"),
+      known_failure(methods[0].name, quantity, worst[0], 0.5 - noise, 0.5 + noise,
+                    "0.5: half of all points lie behind their triangle"),
+      known_failure(methods[1].name, quantity, worst[1], 0.5 - noise, 0.5 + noise,
+                    "0.5 at 1e4 units or 1e6 from the origin, where it is rounded away"),
       known_failure(methods[2].name, quantity, worst[2], 0, 0.125,
                     "1.1e-3 from nearby; at most half of the quarter that comes from up to 1e3 sizes away"),
       known_failure(methods[3].name, quantity, worst[3], 0, 0, "0 (Ray Tracing Gems 2019, chapter 6)"),
@@ -211,9 +217,10 @@ StabilityResult run_skipped_layers(const StabilityRun& run) {
   const std::string quantity = "rays that start beyond an inner sphere 4e-5 radii deeper";
   StabilityResult result;
   result.figures.push_back(known_failure("fixed offset of 9e-5 units", quantity + ", radius 1",
-                                         inner_missed(run, 1, fixed), 0.3, 1, "1 (Mitsuba 3 issue 1871)"));
+                                         inner_missed(run, 1, fixed), 1, 1,
+                                         "1: 9e-5 exceeds the gap (Mitsuba 3 issue 1871)"));
   result.figures.push_back(known_failure("Waechter and Binder", quantity + ", radius 1e-4",
-                                         inner_missed(run, 1e-4f, leaving_by(Departure::waechter_binder)), 0.3, 1,
+                                         inner_missed(run, 1e-4f, leaving_by(Departure::waechter_binder)), 1, 1,
                                          "1: below 1/32 it is a fixed 1.5e-5"));
   for (const float radius : {1e-4f, 1.0f, 1e6f})
     result.figures.push_back(held("bound on the hit point's error, as the renderer has it",

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "benchmarks/samples/scenes.h"
+#include "benchmarks/stability/case_pictures.h"
 #include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/ray_tree_parts.h"
 #include "renderer/optics.h"
@@ -74,6 +75,39 @@ RefractionErrors refraction_errors(const std::vector<Incidence>& rays, double re
   return errors;
 }
 
+/// The function in double against extended precision by the angle itself: largest error, radians.
+double double_precision_error(const std::vector<Incidence>& rays, double eta) {
+  double worst = 0;
+  for (const Incidence& ray : rays) {
+    const Vec3d n = unit(Vec3d(ray.normal)), v = unit(Vec3d(ray.direction));
+    const auto p = refracted_direction(v, n, eta);
+    if (!p) continue;
+    const long double sine = static_cast<long double>(v.cross(n).length()) * static_cast<long double>(eta);
+    const long double off = std::asin(std::min(sine, 1.0L)) - std::atan2(static_cast<long double>(p->cross(n).length()),
+                                                                         static_cast<long double>(-p->dot(n)));
+    worst = std::max(worst, static_cast<double>(std::abs(off)));
+  }
+  return worst;
+}
+
+/// Errors over the distance from the critical angle, a decade at a time.
+StabilityGraph critical_graph(const StabilityRun& run, double index) {
+  StabilityGraph graph{"P in glass near the critical angle, index 1.5",
+                       "radians before the critical angle",
+                       "radians that P is off, the most",
+                       {{"single precision", {}}, {"its bound", {}, true}, {"double precision", {}}}};
+  const double critical = std::asin(1 / index);
+  for (int decade = -1; decade >= -6; --decade) {
+    const double before = std::pow(10.0, decade), angle = critical - before;
+    const double cos_t = std::sqrt(1 - std::pow(index * std::sin(angle), 2));
+    const std::vector<Incidence> rays = incidences(scaled(run, 4'000, 1'000), angle, 29);
+    graph.lines[0].points.emplace_back(before, refraction_errors(rays, 1 / index).ours);
+    graph.lines[1].points.emplace_back(before, kFloatRoundoff * refraction_bound(index, cos_t));
+    graph.lines[2].points.emplace_back(before, double_precision_error(rays, index));
+  }
+  return graph;
+}
+
 StabilityResult critical_angle(const StabilityRun& run) {
   StabilityResult result;
   // An index whose reciprocal floats hold too: what is compared is the refraction, not the index.
@@ -89,20 +123,10 @@ StabilityResult critical_angle(const StabilityRun& run) {
                                          "3.4e-5: unavoidable, the angle is ill-conditioned by 1 / cos t = 190"));
   result.figures.push_back(held("single precision", "error over its bound of 8 ulp (1 + eta + (1 + eta^2) / cos t)",
                                 errors.ours_over_bound, 0, 1, "1: the bound is derived"));
-  double worst_double = 0;
-  for (const Incidence& ray : rays) {
-    // The same in double against extended precision by the angle itself.
-    const Vec3d n = unit(Vec3d(ray.normal)), v = unit(Vec3d(ray.direction));
-    const auto p = refracted_direction(v, n, eta);
-    if (!p) continue;
-    const long double sine = static_cast<long double>(v.cross(n).length()) * static_cast<long double>(eta);
-    const long double off = std::asin(std::min(sine, 1.0L)) - std::atan2(static_cast<long double>(p->cross(n).length()),
-                                                                         static_cast<long double>(-p->dot(n)));
-    worst_double = std::max(worst_double, static_cast<double>(std::abs(off)));
-  }
   result.figures.push_back(held("double precision", "radians that P is off, 1.7e-5 before the critical angle",
-                                worst_double, 0, 2 * 0x1p-53 * refraction_bound(eta, cos_t / 2),
+                                double_precision_error(rays, eta), 0, 2 * 0x1p-53 * refraction_bound(eta, cos_t / 2),
                                 "6e-14 = 3.4e-5 2^-29"));
+  if (run.pictures) result.graphs.push_back(critical_graph(run, kIndex));
   return result;
 }
 
@@ -110,13 +134,20 @@ StabilityResult index_near_one(const StabilityRun& run) {
   StabilityResult result;
   constexpr double kIndex = 1.0001;
   RefractionErrors worst;
+  StabilityGraph graph{"P through index 1.0001",
+                       "degrees over the surface",
+                       "radians that P is off, the most",
+                       {{"P = k_f (N + V') - N", {}}, {"P from unit vectors", {}}}};
   for (const double degrees : {80.0, 85.0, 89.0, 89.9, 89.99, 89.999}) {
     const auto errors = refraction_errors(incidences(scaled(run, 10'000, 1'000), degrees * kDegree, unsigned(degrees)),
                                           1 / double(static_cast<float>(1 / kIndex)));
     worst.ours = std::max(worst.ours, errors.ours);
     worst.ours_over_bound = std::max(worst.ours_over_bound, errors.ours_over_bound);
     worst.whitted = std::max(worst.whitted, errors.whitted);
+    graph.lines[0].points.emplace_back(90 - degrees, errors.whitted);
+    graph.lines[1].points.emplace_back(90 - degrees, errors.ours);
   }
+  if (run.pictures) result.graphs.push_back(std::move(graph));
   // k_f^-2 is a difference of k_n^2 |V'|^2 and |V'|^2 - 1, both up to 3e9 at 89.999 degrees: rounding once to a dozen
   // times, it loses k_n^2 / (k_n^2 - 1) = 5000 of its digits, and P turns by half of that times sin t cos t.
   const double cos_t = std::sqrt(1 - 1 / (kIndex * kIndex)), lost = kIndex * kIndex / (kIndex * kIndex - 1);
@@ -131,6 +162,30 @@ StabilityResult index_near_one(const StabilityRun& run) {
   return result;
 }
 
+/// R of rays at the plane y = 0: one way round from left to right, V.N from 1 on top to a tenth of it in each further
+/// row, in the last one 0. Lit by where R leads; orange where it has no value or no length.
+template <class Reflect>
+StabilityPicture grazing_picture(std::string caption, const Reflect& reflect) {
+  constexpr int kAzimuths = 120, kDecades = 46;  // the last one that single precision holds, then 0
+  return painted_picture(
+      std::move(caption), kAzimuths, kDecades,
+      [&](int x, int y) {
+        const double height = y + 1 < kDecades ? std::pow(10.0, -y) : 0, azimuth = 2 * kPi * x / kAzimuths;
+        const double across = std::sqrt(1 - height * height);
+        const Vec3f v(Vec3d(across * std::cos(azimuth), -height, across * std::sin(azimuth)));
+        const Vec3f r = reflect(v, Vec3f(0, 1, 0));
+        if (!(std::abs(r.length() - 1) < 1e-3f)) return kFaultColor;
+        const double level = 0.35 + 0.25 * double(r.x);
+        return PaintedColor{0.3 * level, 0.6 * level + 0.2 * double(r.y), level};
+      },
+      2);
+}
+
+Vec3f reflected_as_printed(const Vec3f& v, const Vec3f& n) {
+  const Vec3f r = v / std::abs(v.dot(n)) + n * 2.0f;
+  return r / r.length();
+}
+
 StabilityResult grazing(const StabilityRun& run) {
   StabilityResult result;
   const int count = scaled(run, 1000, 100);
@@ -143,8 +198,7 @@ StabilityResult grazing(const StabilityRun& run) {
   for (int i = 0; i < count; ++i) {
     const double angle = azimuth(random);
     const Vec3f v(Vec3d(std::cos(angle), 0, std::sin(angle)));
-    const Vec3f scaled_v = v / std::abs(v.dot(normal)), r = scaled_v + normal * 2.0f;
-    whitted += !finite(r / r.length());
+    whitted += !finite(reflected_as_printed(v, normal));
     const Vec3f mirrored = reflected_direction(v, normal);
     const auto refracted = refracted_direction(v, normal, 1 / 1.5f);
     ours += !finite(mirrored) || !refracted || !finite(*refracted);
@@ -165,6 +219,13 @@ StabilityResult grazing(const StabilityRun& run) {
   const RenderResult picture = rendered_for(run, scene);
   result.figures.push_back(held("renderer", "samples that are not finite, rays along a plane of glass",
                                 double(picture.statistics.not_finite_samples), 0, 0, "0"));
+  if (run.pictures) {
+    result.pictures.push_back(grazing_picture(
+        "V' = V / |V.N|, as printed. V.N falls to a tenth from row to row, at last to 0: where R is lost (orange)",
+        reflected_as_printed));
+    result.pictures.push_back(grazing_picture(
+        "V - 2 (V.N) N: R everywhere", [](const Vec3f& v, const Vec3f& n) { return reflected_direction(v, n); }));
+  }
   return result;
 }
 

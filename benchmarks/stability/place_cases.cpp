@@ -5,6 +5,9 @@
 #include <cmath>
 #include <memory>
 
+#include "benchmarks/samples/scenes.h"
+#include "benchmarks/stability/case_pictures.h"
+#include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/intersection_cases.h"
 #include "benchmarks/stability/ray_probes.h"
 #include "geometry/angle.h"
@@ -64,20 +67,61 @@ FarSphereErrors far_sphere_errors(const StabilityRun& run, double distance) {
   return errors;
 }
 
+/// The sphere from 2e3 radii away through a telescope, in light from the side: by the normal at the place that `place`
+/// finds along a ray.
+template <class Place>
+StabilityPicture far_sphere_picture(std::string caption, const Place& place) {
+  constexpr int kSize = 160;
+  constexpr double kAway = 2e3;
+  const Vec3d away = unit(Vec3d(0.3, 0.2, 1)), right = unit(Vec3d(0, 1, 0).cross(away)), up = away.cross(right);
+  const Vec3d to_light = unit(right + up * 0.6 + away * 0.7);
+  return painted_picture(std::move(caption), kSize, kSize, [&](int x, int y) {
+    const double a = (x + 0.5) * 2.2 / kSize - 1.1, b = 1.1 - (y + 0.5) * 2.2 / kSize;
+    if (std::hypot(a, b) > 0.99) return kPaperColor;
+    const ProbeRay ray = ray_to(away * kAway, right * a + up * b + away * std::sqrt(1 - a * a - b * b));
+    const Vec3d found = place(ray);
+    if (!std::isfinite(found.length())) return kFaultColor;
+    return gray(0.03 + 0.85 * std::max(0.0, unit(found).dot(to_light)));
+  });
+}
+
+void show_far_sphere(StabilityResult& result, const StabilityRun& run) {
+  const ShapeSet shapes = spheres_at({{0, 0, 0, 1}});
+  const EmbreeIntersector tracer(shapes, run.tracer_options());
+  result.pictures.push_back(far_sphere_picture(
+      "A sphere from 2e3 radii away, quadratic in single precision: rings, and no answer (orange)",
+      [](const ProbeRay& ray) {
+        return Vec3d(ray.origin + ray.direction * naive_sphere_distance(ray.origin, ray.direction, 1));
+      }));
+  result.pictures.push_back(
+      far_sphere_picture("Solved again in double about the closest point", [&](const ProbeRay& ray) {
+        const Hit hit = hit_of(tracer, ray);
+        if (hit.geometry == kNoGeometry) return Vec3d(kInfinity);
+        return Vec3d(surface_at(shapes, ray.origin, ray.direction, hit, false).position);
+      }));
+}
+
 StabilityResult run_far_sphere(const StabilityRun& run) {
   StabilityResult result;
+  StabilityGraph graph{"Places on a sphere of radius 1",
+                       "radii away",
+                       "worst error, radii",
+                       {{"quadratic, single precision", {}}, {"Embree's sphere", {}}, {"solved again in double", {}}}};
   for (const double ratio : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const FarSphereErrors errors = far_sphere_errors(run, 1 / ratio);
+    graph.lines[0].points.emplace_back(1 / ratio, errors.naive);
+    graph.lines[1].points.emplace_back(1 / ratio, errors.embree);
+    graph.lines[2].points.emplace_back(1 / ratio, errors.place);
     const std::string at = fmt::format(", 1e{:.0f} radii away", -std::log10(ratio));
     // b^2 and c are squares of the distance, each rounded a few times; their difference is four times the half chord's
     // square of at least .19, under a root.
     const double u = kRoundoff, squares = 1 / (ratio * ratio);
     if (ratio == 1e-2)
       result.figures.push_back(known_failure("quadratic in single precision", "worst error of the distance, radii" + at,
-                                             errors.naive, u * squares / 4, 32 * u * squares,
+                                             errors.naive, u * squares, 16 * u * squares,
                                              "2^-24 (d / r)^2: 3e-3 at 1e2 radii, useless from 1e3"));
     result.figures.push_back(known_failure("Embree's sphere", "worst error of the distance, radii" + at, errors.embree,
-                                           u / ratio / 8, 32 * u / ratio,
+                                           u / ratio, 8 * u / ratio,
                                            "2.5e-5, 2.4e-4 and 2.7e-2 at 1e2, 1e3 and 1e5 (Embree 3.13.5)"));
     // Half an ulp a coordinate on the sphere, and what double's own closed form is off by: 2^-53 of squares of the
     // distance over the half chord.
@@ -89,6 +133,10 @@ StabilityResult run_far_sphere(const StabilityRun& run) {
         held("the same", "worst error of the normal, degrees" + at, errors.normal, 0, bound / kDegree, "as the place"));
     result.figures.push_back(
         held("the renderer's tracer", "rays that miss" + at, static_cast<double>(errors.missed), 0, 0, "0"));
+  }
+  if (run.pictures) {
+    result.graphs.push_back(std::move(graph));
+    show_far_sphere(result, run);
   }
   return result;
 }
@@ -145,7 +193,29 @@ double depth_error(double translation, bool wide) {
   return worst;
 }
 
-StabilityResult run_far_scene(const StabilityRun&) {
+/// A ball of facets on a checkered floor, `translation` from the world's origin; with `wide`, something as far on the
+/// other side, so that the scene reaches as far as it lies away.
+StabilityPicture far_scene_picture(std::string caption, double translation, bool wide) {
+  const Vec3d at(1.000123 * translation, -0.5000317 * translation, 0.9000713 * translation);
+  SceneDescription scene = samples::dark_scene(180, {});
+  scene.cameras[0].position = at + Vec3d(1.5, 2.2, 4);
+  scene.cameras[0].target = at;
+  CheckerPattern checker;
+  checker.size = 0.5;
+  checker.offset = {at.x, at.z};
+  scene.ambient = Rgb(0.15f);
+  scene.lights = {samples::directional_light({-1, -2, -0.7})};
+  scene.materials = {samples::material("floor", checker), samples::material("ball", Rgb(0.75f, 0.3f, 0.1f))};
+  scene.shapes = {samples::mesh_shape(samples::box_mesh({-3, -1.2f, -3}, {3, -1, 3}), "floor"),
+                  samples::mesh_shape(samples::globe_mesh(1, 32, 16), "ball", NormalSource::smooth)};
+  for (ShapeDescription& shape : scene.shapes) shape.transform = samples::translation(at);
+  if (wide) scene.shapes.push_back(samples::shape(SphereShape{-at, 1}, "ball"));
+  scene.render.antialias = {Antialiasing::Method::grid, 2};
+  Warnings warnings;
+  return stability_picture(std::move(caption), render(prepare(std::move(scene), {}, warnings), {}).film);
+}
+
+StabilityResult run_far_scene(const StabilityRun& run) {
   StabilityResult result;
   for (const double translation : {1e3, 1e5, 1e7}) {
     const std::string at = fmt::format(", 1e{:.0f} from the origin", std::log10(translation));
@@ -155,11 +225,18 @@ StabilityResult run_far_scene(const StabilityRun&) {
     if (translation < 1e7)
       result.figures.push_back(known_failure(
           "a scene that reaches as far as it lies away", quantity, depth_error(translation, true),
-          kRoundoff * translation / 8, 8 * double(kRoundoff) * translation, "0.3 to 1.6 ulps of the translation"));
+          kRoundoff * translation / 8, 2 * double(kRoundoff) * translation, "0.3 to 0.4 ulps of the translation"));
     // Corners, eye and distance are about 10 units: 8 half ulps of 16.
     result.figures.push_back(held("scene space about the scene's center", quantity, depth_error(translation, false), 0,
                                   8 * double(kRoundoff) * 16,
                                   "half ulps of the scene's size, whatever the translation"));
+  }
+  if (run.pictures) {
+    result.pictures.push_back(far_scene_picture(
+        "2e6 units from the middle of a scene that reaches that far: corners and places are rounded to 1/8 unit", 2e6,
+        true));
+    result.pictures.push_back(
+        far_scene_picture("2e6 units from the world's origin alone, scene space about the scene's center", 2e6, false));
   }
   return result;
 }

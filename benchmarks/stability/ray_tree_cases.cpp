@@ -1,10 +1,15 @@
 // Rows 24 to 26: trees that are cut too early, that grow too deep, that grow too wide.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "benchmarks/samples/scenes.h"
 #include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/ray_tree_parts.h"
+#include "geometry/embree_intersector.h"
+#include "geometry/surface.h"
+#include "renderer/optics.h"
 
 namespace raytree::benchmarks {
 namespace {
@@ -136,11 +141,14 @@ class StackProbe final : public RayIntersector {
   mutable std::uintptr_t lowest_ = UINTPTR_MAX, highest_ = 0;
 };
 
-StabilityResult deep_recursion(const StabilityRun& run) {
-  // Mirrors that lose nothing, a ray that goes between them as often as the depth allows.
-  const int depth = scaled(run, 100'000, 5'000);
-  SceneDescription description = facing_mirrors(1, 1e-3, depth, 0);
-  Scene scene = prepared_for(run, std::move(description));
+struct DeepTree {
+  double levels = 0, stack_bytes = 0;
+  double light = 0;
+};
+
+/// Mirrors that lose nothing, a ray that goes between them as often as the depth allows.
+DeepTree deep_tree(const StabilityRun& run, int depth) {
+  Scene scene = prepared_for(run, facing_mirrors(1, 1e-3, depth, 0));
   auto probe = std::make_unique<StackProbe>(std::move(scene.intersector));
   const StackProbe& stack = *probe;
   scene.intersector = std::move(probe);
@@ -148,17 +156,84 @@ StabilityResult deep_recursion(const StabilityRun& run) {
   options.threads = 1;
   options.stop = run.stop;
   const RenderResult rendered = render(scene, options);
+  return {double(rendered.statistics.deepest_level), double(stack.bytes()), color_at(rendered.film, 0, 0).g};
+}
+
+/// The same tree as textbooks have it: a function that calls itself for the mirrored ray.
+class RecursiveLight {
+ public:
+  RecursiveLight(const StabilityRun& run, const Scene& scene)
+      : shapes_(*scene.shapes), tracer_(shapes_, run.tracer_options()), emitted_(1e-3f) {}
+
+  /// Bytes of the thread's stack between the first call and the last of `levels`.
+  double stack_bytes(int levels) {
+    lowest_ = UINTPTR_MAX, highest_ = 0;
+    static_cast<void>(gathered({0, 0, 0.5f}, {0, 0, -1}, levels));
+    return double(highest_ - lowest_);
+  }
+
+ private:
+  // NOLINTNEXTLINE(misc-no-recursion): it is what is measured.
+  [[gnu::noinline]] float gathered(const Vec3f& origin, const Vec3f& direction, int levels) {
+    const auto here = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
+    lowest_ = std::min(lowest_, here), highest_ = std::max(highest_, here);
+    const Hit hit = tracer_.intersect_one(origin, direction, std::numeric_limits<float>::infinity());
+    if (levels == 1 || hit.geometry == kNoGeometry) return 0;
+    const SurfacePoint point = surface_at(shapes_, origin, direction, hit, false);
+    const Vec3f normal = point.geometric_normal;
+    return emitted_ + gathered(offset_origin(point, normal), reflected_direction(direction, normal), levels - 1);
+  }
+
+  const ShapeSet& shapes_;
+  const EmbreeIntersector tracer_;
+  const float emitted_;
+  std::uintptr_t lowest_ = UINTPTR_MAX, highest_ = 0;
+};
+
+constexpr double kUsualStack = 8 << 20;  ///< bytes of a thread's stack where nobody asks for another
+/// What a call keeps at least: the mirrored ray, which is passed by reference, and where to return to.
+constexpr double kLeastFrame = 2 * sizeof(Vec3f) + sizeof(void*);
+/// And at most, sanitizers' frames too.
+constexpr double kLargestFrame = 8192;
+
+StabilityResult deep_recursion(const StabilityRun& run) {
+  const int depth = scaled(run, 100'000, 5'000);
+  const DeepTree deepest = deep_tree(run, depth);
   StabilityResult result;
-  result.figures.push_back(held("stack of rays", "levels reached / levels asked for",
-                                rendered.statistics.deepest_level / double(depth), 1, 1, "1"));
-  // A recursive tracer keeps at least a hit, a ray and a return address a level, over 100 bytes.
+  constexpr int kRecursiveLevels = 500;
+  const Scene mirrors = prepared_for(run, facing_mirrors(1, 1e-3, kRecursiveLevels, 0));
+  RecursiveLight recursive(run, mirrors);
+  const double frame = recursive.stack_bytes(kRecursiveLevels) / (kRecursiveLevels - 1);
+  result.figures.push_back(known_failure("recursion", "levels that a thread's usual stack of 8 MB holds",
+                                         std::floor(kUsualStack / frame), std::floor(kUsualStack / kLargestFrame),
+                                         std::ceil(kUsualStack / kLeastFrame),
+                                         "8 MB over the bytes of a call: it overflows (MoonRay issue 62)"));
+  result.figures.push_back(
+      held("stack of rays", "levels reached / levels asked for", deepest.levels / depth, 1, 1, "1"));
   result.figures.push_back(held("stack of rays", "bytes of the thread's stack that a level takes",
-                                double(stack.bytes()) / depth, 0, 1,
+                                deepest.stack_bytes / depth, 0, 1,
                                 "0: there is no recursion; others overflow or abort (MoonRay issue 62)"));
   // Terms of one size: each addition rounds by half an ulp of the sum, and they add up at worst.
   const double exact = depth * double(1e-3f), rounding = 0x1p-24 * depth;
-  result.figures.push_back(held("stack of rays", "light gathered / its sum", color_at(rendered.film, 0, 0).g / exact,
-                                1 - rounding, 1 + rounding, "1"));
+  result.figures.push_back(
+      held("stack of rays", "light gathered / its sum", deepest.light / exact, 1 - rounding, 1 + rounding, "1"));
+  if (run.pictures) {
+    StabilityGraph graph{"The thread's stack under a deep tree",
+                         "levels",
+                         "bytes",
+                         {{"recursion", {}},
+                          {"recursion, carried on", {}, true},
+                          {"generations: 0 (drawn at 8)", {}},
+                          {"a thread's stack, 8 MB", {}, true}}};
+    for (int levels = 10; levels <= depth; levels *= 10) {
+      if (levels <= kRecursiveLevels) graph.lines[0].points.emplace_back(levels, recursive.stack_bytes(levels));
+      graph.lines[1].points.emplace_back(levels, frame * (levels - 1));
+      // At least the word that would tell: a logarithmic axis has no 0.
+      graph.lines[2].points.emplace_back(levels, std::max(8.0, deep_tree(run, levels).stack_bytes));
+      graph.lines[3].points.emplace_back(levels, kUsualStack);
+    }
+    result.graphs.push_back(std::move(graph));
+  }
   return result;
 }
 
@@ -194,6 +269,19 @@ StabilityResult exponential_tree(const StabilityRun& run) {
   const double lost = 1 - std::ldexp(1.0, -depth) - double(color_at(cut.film, 0, 0).g), rounding = rays(cut) * 0x1p-24;
   result.figures.push_back(
       held("cutoff 1/1020", "light lost", lost, -rounding, kDefaultCutoff + rounding, "at most the cutoff"));
+  if (run.pictures) {
+    StabilityGraph graph{"Rays of one sample among panes",
+                         "levels allowed",
+                         "rays",
+                         {{"depth alone", {}}, {"2^D - 1", {}, true}, {"cutoff 1/1020", {}}},
+                         StabilityGraph::Scale::linear};
+    for (int most = 2; most <= depth; most += 2) {
+      graph.lines[0].points.emplace_back(most, rays(rendered_for(run, many_panes(most, 0))));
+      graph.lines[1].points.emplace_back(most, std::ldexp(1.0, most) - 1);
+      graph.lines[2].points.emplace_back(most, rays(rendered_for(run, many_panes(most, kDefaultCutoff))));
+    }
+    result.graphs.push_back(std::move(graph));
+  }
   return result;
 }
 
@@ -207,7 +295,7 @@ std::vector<StabilityCase> branching_cases() {
        "Whitted 1980, p. 345; Hall and Greenberg 1983", tree_truncation},
       {25, "deep-recursion", "A tree a hundred thousand levels deep",
        "two facing mirrors that lose nothing, depth 100000",
-       "generations of rays on a stack of their own in place of recursion", "openmoonray issue 62", deep_recursion},
+       "generations of rays on a stack of their own; off: recursion", "openmoonray issue 62", deep_recursion},
       {26, "exponential-tree", "A tree that doubles at every level",
        "parallel panes that reflect and transmit a quarter each, 16 levels",
        "the cutoff's allowance, divided over children; off: depth alone", "Whitted 1980, sec. 2", exponential_tree}};

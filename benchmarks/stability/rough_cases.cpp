@@ -5,6 +5,7 @@
 #include <random>
 
 #include "benchmarks/samples/rough_mirror.h"
+#include "benchmarks/stability/case_pictures.h"
 #include "benchmarks/stability/case_tools.h"
 #include "benchmarks/stability/ray_tree_parts.h"
 #include "renderer/low_discrepancy.h"
@@ -127,6 +128,48 @@ StabilityResult facet_noise(const StabilityRun& run) {
   return result;
 }
 
+/// Mirrored directions seen along the surface: a hundredth a pixel, the horizon at two thirds of the height. Orange
+/// below it.
+template <class Mirrored>
+StabilityPicture mirrored_picture(std::string caption, std::uint32_t points, const Mirrored& mirrored) {
+  constexpr int kWidth = 180, kHeight = 120, kHorizon = 80;
+  std::vector<int> counts(std::size_t(kWidth) * kHeight);
+  for (std::uint32_t i = 0; i < points; ++i) {
+    const Vec3d r(mirrored(i));
+    const int x = static_cast<int>(std::floor(r.z * 100)) + kWidth / 2;
+    const int y = kHorizon - 1 - static_cast<int>(std::floor(r.y * 100));
+    if (x >= 0 && x < kWidth && y >= 0 && y < kHeight) ++counts[std::size_t(y) * kWidth + std::size_t(x)];
+  }
+  return painted_picture(
+      std::move(caption), kWidth, kHeight,
+      [&](int x, int y) {
+        const double density = 1 - std::exp(-counts[std::size_t(y) * kWidth + std::size_t(x)] * 2e4 / points);
+        const PaintedColor ground = y < kHorizon ? gray(0.01) : gray(0.06);
+        const PaintedColor light = y < kHorizon ? PaintedColor{0.3, 0.6, 0.9} : kFaultColor;
+        return PaintedColor{ground.r + density * light.r, ground.g + density * light.g, ground.b + density * light.b};
+      },
+      2);
+}
+
+void add_mirrored_pictures(StabilityResult& result, const StabilityRun& run) {
+  if (!run.pictures) return;
+  constexpr std::uint32_t kPoints = 1 << 14;
+  const Material mirror = rough_mirror(0.1f);
+  const ShadingPoint point = level_point(mirror, 80);
+  const Vec3f normal(0, 1, 0), v = point.direction;
+  const TangentFrame frame = tangent_frame(normal);
+  result.pictures.push_back(mirrored_picture(
+      "R of facets as they are drawn, roughness .1 at 80 degrees: below the horizon (orange)", kPoints,
+      [&](std::uint32_t i) {
+        const Vec3f facet =
+            facet_normal(normal, frame, Vec2f(normal_deviates(low_discrepancy_point(i, 28))) * mirror.roughness);
+        return v - facet * (2 * v.dot(facet));
+      }));
+  result.pictures.push_back(
+      mirrored_picture("Redrawn: R of facets that serve, none below", kPoints,
+                       [&](std::uint32_t i) { return rough_branches(point, 1.5f, 28, i, kPoints).reflected; }));
+}
+
 StabilityResult below_surface(const StabilityRun& run) {
   StabilityResult result;
   const int points = scaled(run, 1 << 16, 1 << 12);
@@ -165,6 +208,7 @@ StabilityResult below_surface(const StabilityRun& run) {
   result.figures.push_back(held("redrawn", "lowest sine of R over the surface", lowest, 0, 1, "not below 0"));
   result.figures.push_back(held("redrawn", "mean sine of R less that of the density above the surface", worst_mean, 0,
                                 allowed, "0, four deviations of independent points"));
+  add_mirrored_pictures(result, run);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "benchmarks/samples/scenes.h"
+#include "benchmarks/stability/case_pictures.h"
 #include "benchmarks/stability/case_tools.h"
 
 namespace raytree::benchmarks {
@@ -89,8 +90,10 @@ StabilityResult small_objects(const StabilityRun& run) {
   result.figures.push_back(held("Whitted's least radius and areas", "area seen / pi r^2", sum / area, 1 - noise,
                                 1 + noise, "1, four deviations of leaves on the rims"));
   if (run.pictures)
-    result.pictures = {stability_picture("A sample at each pixel's center", at_centers),
-                       stability_picture("None is lost", adaptive)};
+    for (const auto& [caption, film] :
+         {std::pair("A sample at each pixel's center: spheres are lost, others are blocks", &at_centers),
+          {"Least radius and areas: none is lost, each as bright as it is large", &adaptive}})
+      result.pictures.push_back(part_of(stability_picture(caption, *film), {0, 0, 12 * kBlock, 12 * kBlock}, 6));
   return result;
 }
 
@@ -139,10 +142,15 @@ StabilityResult mirrored_objects(const StabilityRun& run) {
     double lost = 0;
     for (const auto& [column, row] : field.blocks) lost += covered_in_block(film, column, row) <= 0;
     const auto count = static_cast<double>(field.blocks.size());
+    const int shown = 12 * kBlock, first = kBlock * ((blocks - 12) / 2);
     if (run.pictures)
-      result.pictures.push_back(stability_picture(
-          minimum_level == 0 ? "Lamps in a mirror ball, least radius alone" : "Lamps in a mirror ball, minimum_level 3",
-          film));
+      result.pictures.push_back(
+          part_of(stability_picture(
+                      minimum_level == 0
+                          ? "Lamps of .15 pixels in the middle of a mirror ball, least radius alone: most are lost"
+                          : "The same, minimum_level 3: each is there",
+                      film),
+                  {first, first, shown, shown}, 6));
     if (minimum_level == 0)
       result.figures.push_back(
           known_failure("least radius alone", "share of mirrored lamps of .15 pixels lost", lost / count,
@@ -211,9 +219,13 @@ StabilityResult thin_strip(const StabilityRun& run) {
                                 "0: weighed by its outline's area, in single precision"));
   result.figures.push_back(
       held("Whitted's least radius and areas", "darkest column", least_column, expected * 0.999, 1, "w: no gap"));
-  for (const bool adaptive : {false, true})
-    add_picture(run, result, adaptive ? "Weighed by its area" : "A strip of .1 pixels, a sample a pixel",
-                strip_scene(0.1, kSlope, 0.37, adaptive, 160));
+  if (run.pictures)
+    for (const bool adaptive : {false, true})
+      result.pictures.push_back(part_of(
+          stability_picture(adaptive ? "Weighed by its area: a faint line without a gap"
+                                     : "A strip .1 pixels wide, a sample a pixel: dashes, white as if a pixel wide",
+                            rendered_for(run, strip_scene(0.1, kSlope, 0.37, adaptive, 160)).film),
+          {0, 24, 160, 16}, 4));
   return result;
 }
 
@@ -250,6 +262,22 @@ StabilityResult equal_corners(const StabilityRun& run) {
                                 0, largest_edge_error(levels), "2^-levels"));
   result.figures.push_back(held("filtered pattern", "a pixel half black whose corners are white, off by", off(0, true),
                                 0, 1e-6, "0: its exact mean"));
+  if (run.pictures) {
+    constexpr int kFiner = 12;  // pixels for each
+    SceneDescription fine = fooling_checker(0, false);
+    fine.image = {16 * kFiner, 16 * kFiner};
+    fine.render.antialias = {Antialiasing::Method::none, 1};
+    result.pictures.push_back(
+        stability_picture("What is there: squares of half a pixel", rendered_for(run, std::move(fine)).film));
+    for (const auto& [caption, minimum_level, filtered] : {std::tuple("Four corners: all white", 0, false),
+                                                           {"minimum_level 1: half", 1, false},
+                                                           {"The pattern's exact mean: half", 0, true}}) {
+      StabilityPicture picture =
+          stability_picture(caption, rendered_for(run, fooling_checker(minimum_level, filtered)).film);
+      picture.magnified = kFiner;
+      result.pictures.push_back(std::move(picture));
+    }
+  }
   return result;
 }
 

@@ -78,10 +78,13 @@ inline StabilityFigure known_failure(std::string method, std::string quantity, d
 struct StabilityPicture {
   std::string caption;
   DisplayImage image;
+  int magnified = 1;  ///< pixels of the page, each way, that one of the image takes; its borders stay hard
 };
 
-/// A figure over a knob, for the page; both axes logarithmic, points that are not positive are left out.
+/// A figure over a knob, for the page. Points that are not finite are left out, and on a logarithmic axis those that
+/// are not positive.
 struct StabilityGraph {
+  enum class Scale : std::uint8_t { logarithmic, linear };
   struct Line {
     std::string name;
     std::vector<std::pair<double, double>> points;
@@ -89,12 +92,15 @@ struct StabilityGraph {
   };
   std::string title, x_label, y_label;
   std::vector<Line> lines;
+  Scale x_scale = Scale::logarithmic, y_scale = Scale::logarithmic;
 };
 
+/// What a case shows. With StabilityRun::pictures it has a picture or a graph, or says why there is nothing to see.
 struct StabilityResult {
   std::vector<StabilityFigure> figures;
   std::vector<StabilityPicture> pictures;
   std::vector<StabilityGraph> graphs;
+  std::string nothing_to_see = {};  ///< a sentence; empty: there is something
 };
 
 struct StabilityCase {

@@ -29,7 +29,9 @@ nav a, td a { color: var(--accent); text-decoration: none; } nav a { margin-righ
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 2px 14px; margin: 8px 0 14px; }
 dt { color: var(--quiet); } dd { margin: 0; }
 .pictures { display: flex; flex-wrap: wrap; gap: 16px; margin: 0 0 14px; }
-.pictures figure { width: min-content; } .pictures img { display: block; border-radius: 4px; max-width: none; }
+.pictures figure { width: min-content; } .pictures img { display: block; border-radius: 4px; max-width: none; outline: 1px solid var(--line); }
+.pictures img.hard { image-rendering: pixelated; border-radius: 0; }
+.unseen { border-left: 3px solid var(--line); padding-left: 12px; margin: 0 0 14px; }
 .graph { width: 100%; max-width: 700px; display: block; margin: 0 0 14px; }
 .figures { overflow-x: auto; } .figures th, .figures td { font-size: 14px; }
 .verdict { white-space: nowrap; } summary { cursor: pointer; margin: 14px 0; }
@@ -84,9 +86,10 @@ std::string pictures_html(const std::vector<StabilityPicture>& pictures) {
   std::string html = "<div class=\"pictures\">";
   for (const StabilityPicture& picture : pictures)
     html += fmt::format(
-        "<figure><img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>",
-        png_address(picture.image), picture.image.width, picture.image.height, escaped_html(picture.caption),
-        escaped_html(picture.caption));
+        "<figure><img{} src=\"{}\" width=\"{}\" height=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>",
+        picture.magnified > 1 ? " class=\"hard\"" : "", png_address(picture.image),
+        picture.magnified * picture.image.width, picture.magnified * picture.image.height,
+        escaped_html(picture.caption), escaped_html(picture.caption));
   return html + "</div>\n";
 }
 
@@ -115,6 +118,8 @@ std::string case_html(const StabilityEntry& entry) {
   }
   std::string graphs;
   for (const StabilityGraph& graph : entry.result.graphs) graphs += graph_svg(graph);
+  if (!entry.result.nothing_to_see.empty())
+    graphs += fmt::format("<p class=\"unseen\">Nothing to see: {}</p>\n", escaped_html(entry.result.nothing_to_see));
   return fmt::format(
       "<article class=\"card\" id=\"{0}\" data-verdicts=\"{1}\"><div class=\"head\"><h3>{2}</h3>"
       "<span class=\"chip {3}\">{4}</span></div>\n<p class=\"quiet\"><code>{0}</code>, row {5}</p>\n"

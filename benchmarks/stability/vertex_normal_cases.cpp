@@ -69,7 +69,19 @@ PolygonMesh cut_corner() {
   return mesh;
 }
 
-StabilityResult weighted_normals(const StabilityRun&) {
+/// That corner from straight ahead, lit from there: the light is as alike in the three squares as the normal is.
+SceneDescription lit_corner(Smoothing::Method method) {
+  ShapeDescription corner = painted_mesh(std::make_shared<PolygonMesh>(cut_corner()), NormalSource::smooth);
+  corner.smoothing.emplace() = {method, 180, false};
+  SceneDescription scene = highlit_scene(std::move(corner), 1, 1, 1.9, 20);
+  scene.cameras[0].position = {-4.7, -4.7, -4.7};
+  scene.cameras[0].target = {0.3, 0.3, 0.3};
+  scene.lights = {sunlight({1, 1, 1})};
+  scene.materials[0].diffuse = Rgb(0.25f);
+  return scene;
+}
+
+StabilityResult weighted_normals(const StabilityRun& run) {
   StabilityResult result;
   const auto error = [](NormalMethod method) {
     PolygonMesh mesh = cut_corner();
@@ -91,6 +103,12 @@ StabilityResult weighted_normals(const StabilityRun&) {
   result.figures.push_back(
       predicted_figure("weighted by angle (the renderer's own)", quantity, error(NormalMethod::angle), 0, rounding,
                        "0 however faces are cut (Thuermer and Wuethrich 1998)", StabilityExpectation::holds));
+  for (const auto& [caption, method] :
+       {std::pair("unit normals of triangles: the highlight leans to the square that has two there",
+                  Smoothing::Method::unit),
+        {"weighted by area: as far", Smoothing::Method::area},
+        {"weighted by angle: all three squares alike", Smoothing::Method::angle}})
+    add_picture(result, run, caption, lit_corner(method), 200, 200);
   return result;
 }
 
