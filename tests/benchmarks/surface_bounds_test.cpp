@@ -192,6 +192,11 @@ TEST(SurfaceBounds, AConeInAnInstanceHasAnOutlineAsWideAsItsRayIsOff) {
   EXPECT_EQ(bounds(4 + 1e-4f, 0.5f).side, Side::outside);
   // Near the silhouette the distance is off by the root of what the ray is.
   EXPECT_GT(bounds(1, 1 - 1e-4f).distance_error, 10 * bounds(1, 0).distance_error);
+  // Passed by, by less than rounding: a hit is an edge, but only where the ray comes that near.
+  const SurfaceBounds passed = bounds(1, std::nextafter(1.0f, 2.0f));
+  EXPECT_EQ(passed.side, Side::uncertain);
+  EXPECT_NEAR(passed.distance, 10, 1e-3);
+  EXPECT_LT(passed.distance_error, 0.02);
 }
 
 TEST(SurfaceBounds, AShapeThatIsPassedByIsOutside) {
