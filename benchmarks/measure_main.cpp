@@ -1,5 +1,5 @@
-// The program `raytree_measure [ROW...] [--json FILE]`: measures the rows asked for, prints the table of README, and
-// ends with status 3 when a figure falls short of its bound.
+// The program `raytree_measure [ROW...] [--json FILE] [--chart FILE]`: measures the rows asked for, prints the table of
+// README, and ends with status 3 when a figure falls short of its bound.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,10 +32,42 @@ std::string row_names() {
   return names;
 }
 
+std::string charted_row_names() {
+  std::string names;
+  for (const Row& row : kRows)
+    if (row.chart_svg != nullptr) names += (names.empty() ? "" : ", ") + std::string(row.name);
+  return names;
+}
+
 std::string help() {
-  return "Usage: raytree_measure [ROW...] [--json FILE]\n\nMeasures the rows named, all without any: " + row_names() +
-         "\nPrints a table; exit status 3 when a figure falls short of its bound.\ndocs/benchmarks.md describes each "
-         "row.\n";
+  return "Usage: raytree_measure [ROW...] [--json FILE] [--chart FILE]\n\nMeasures the rows named, all without any: " +
+         row_names() +
+         "\nPrints a table; exit status 3 when a figure falls short of its bound.\n--json writes the figures for "
+         "programs, --chart the row's chart as SVG (of: " +
+         charted_row_names() + ").\ndocs/benchmarks.md describes each row.\n";
+}
+
+struct Outputs {
+  std::string json, chart;  ///< files; empty: none
+};
+
+/// The one row whose chart is asked for. Throws Error (bad_input) where none or several of the rows have one.
+const Row& charted_row(const std::vector<const Row*>& rows) {
+  const Row* found = nullptr;
+  for (const Row* row : rows) {
+    if (row->chart_svg == nullptr) continue;
+    if (found != nullptr) throw Error(ErrorKind::bad_input, {}, "--chart takes one row that has a chart");
+    found = row;
+  }
+  if (found == nullptr)
+    throw Error(ErrorKind::bad_input, {}, "--chart: no row asked for has a chart; these have: " + charted_row_names());
+  return *found;
+}
+
+void write_text(const std::string& name, const std::string& text) {
+  std::ofstream file(name);
+  file << text;
+  if (!file.flush()) throw Error(ErrorKind::failure, {name, 0, ""}, "cannot be written");
 }
 
 /// What the figures were measured on: name and value, in the order of printing.
@@ -59,7 +92,8 @@ std::vector<Figure> measured(const Row& row, const MeasureContext& context) {
   }
 }
 
-int measure(const std::vector<const Row*>& rows, const std::string& json_file) {
+int measure(const std::vector<const Row*>& rows, const Outputs& outputs) {
+  const Row* const charted = outputs.chart.empty() ? nullptr : &charted_row(rows);
   const ScratchFolder scratch;
   const MeasureContext context{std::filesystem::read_symlink("/proc/self/exe").parent_path(), scratch.path(),
                                [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }};
@@ -70,22 +104,19 @@ int measure(const std::vector<const Row*>& rows, const std::string& json_file) {
   std::fflush(stdout);
 
   std::vector<Figure> figures;
-  for (const Row* row : rows)
-    for (Figure& figure : measured(*row, context)) {
-      std::printf("%s", table_line(figure).c_str());
-      std::fflush(stdout);
-      figures.push_back(std::move(figure));
-    }
+  for (const Row* row : rows) {
+    std::vector<Figure> of_row = measured(*row, context);
+    for (const Figure& figure : of_row) std::printf("%s", table_line(figure).c_str());
+    std::fflush(stdout);
+    if (row == charted) write_text(outputs.chart, row->chart_svg(of_row));
+    figures.insert(figures.end(), std::move_iterator(of_row.begin()), std::move_iterator(of_row.end()));
+  }
   std::printf("\n");
   for (const Figure& figure : figures)
     if (!figure.note.empty())
       std::printf("- %s, %s: %s\n", figure.row.c_str(), figure.what.c_str(), figure.note.c_str());
 
-  if (!json_file.empty()) {
-    std::ofstream file(json_file);
-    file << figures_json(machine, figures);
-    if (!file.flush()) throw Error(ErrorKind::failure, {json_file, 0, ""}, "cannot be written");
-  }
+  if (!outputs.json.empty()) write_text(outputs.json, figures_json(machine, figures));
   for (const Figure& figure : figures)
     if (!figure.holds()) return kFallsShort;
   return kSuccess;
@@ -105,15 +136,16 @@ int run(const std::vector<std::string>& words) {
     return kSuccess;
   }
   std::vector<const Row*> rows;
-  std::string json_file;
+  Outputs outputs;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "--help" || words[i] == "-h") {
       std::printf("%s", help().c_str());
       return kSuccess;
     }
-    if (words[i] == "--json") {
-      if (++i == words.size()) throw Error(ErrorKind::bad_input, {}, "--json takes a file name");
-      json_file = words[i];
+    if (words[i] == "--json" || words[i] == "--chart") {
+      if (i + 1 == words.size()) throw Error(ErrorKind::bad_input, {}, words[i] + " takes a file name");
+      std::string& file = words[i] == "--json" ? outputs.json : outputs.chart;
+      file = words[++i];
       continue;
     }
     const Row* found = nullptr;
@@ -125,7 +157,7 @@ int run(const std::vector<std::string>& words) {
   }
   if (rows.empty())
     for (const Row& row : kRows) rows.push_back(&row);
-  return measure(rows, json_file);
+  return measure(rows, outputs);
 }
 
 }  // namespace

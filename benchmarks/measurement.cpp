@@ -121,6 +121,8 @@ std::string figures_json(const std::vector<std::pair<std::string, std::string>>&
     line["holds"] = figure.holds();
     if (!figure.problem.empty()) line["problem"] = figure.problem;
     if (!figure.note.empty()) line["note"] = figure.note;
+    if (!figure.place.line.empty())
+      line["chart"] = {{"plot", figure.place.plot}, {"line", figure.place.line}, {"x", figure.place.x}};
     json["figures"].push_back(line);
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

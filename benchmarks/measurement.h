@@ -33,6 +33,13 @@ PairedSpread measure_pairs(const std::function<double()>& a, const std::function
 
 enum class BoundKind { none, at_least, at_most };
 
+/// Where a figure stands in its row's chart.
+struct ChartPlace {
+  std::string plot;  ///< of the row's plots
+  std::string line;  ///< empty: in none
+  double x = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// One line of the table.
 struct Figure {
   std::string row;   ///< e.g. "floor"
@@ -44,6 +51,7 @@ struct Figure {
   double chase = std::numeric_limits<double>::quiet_NaN();  ///< what is aimed at beyond the bound; NaN: nothing
   std::string note;                                         ///< what lies behind the figure; printed under the table
   std::string problem;  ///< why there is no figure, or why it does not count; empty: it does
+  ChartPlace place;
 
   bool holds() const;
 };

@@ -34,9 +34,13 @@ std::vector<Figure> measure_curved(const MeasureContext& context);
 std::vector<Figure> measure_spd(const MeasureContext& context);
 std::vector<Figure> measure_naive(const MeasureContext& context);
 
+/// The row's chart as SVG, of the figures that have a place in it. Empty: none has.
+std::string naive_chart_svg(const std::vector<Figure>& figures);
+
 struct Row {
   const char* name;
   std::vector<Figure> (*measure)(const MeasureContext&);
+  std::string (*chart_svg)(const std::vector<Figure>&) = nullptr;  ///< null: the row has no chart
 };
 inline constexpr Row kRows[] = {
     {"floor", measure_floor},
@@ -54,7 +58,7 @@ inline constexpr Row kRows[] = {
     {"povray", measure_povray},
     {"povray-masks", measure_povray_masks},
     {"spd", measure_spd},
-    {"naive", measure_naive},
+    {"naive", measure_naive, naive_chart_svg},
 };
 
 /// What `large` compares with, measured in a process of its own (see large.cpp): generates the terrain, builds over it

@@ -1,10 +1,12 @@
 #include "benchmarks/surface_bounds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "geometry/bounding_sphere.h"
 #include "geometry/few_shapes.h"
 #include "geometry/instance_transform.h"
 
@@ -226,41 +228,90 @@ SurfaceBounds disc_bounds(const Question& question, const Imath::V4f& disc, cons
   return bounds;
 }
 
-/// Cones are reckoned in double; what is off is the ray, in instances. What that does is looked up: the ray is moved by
-/// it, both ways across and along.
+/// Roots of a s^2 + 2 half_b s + c, the lesser first; a >= 0, a and half_b not both 0. Where a is 0, one is infinite.
+std::optional<RayInterval> roots_of(double a, double half_b, double c) {
+  const double discriminant = half_b * half_b - a * c;
+  if (!(discriminant >= 0)) return std::nullopt;
+  const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
+  if (q == 0) return RayInterval{0, 0};
+  const double one = c / q, other = a > 0 ? q / a : std::copysign(kInfinity, q);
+  return RayInterval{std::min(one, other), std::max(one, other)};
+}
+
+/// A stretch of a line along which a cone's equation is 0 to some error.
+struct ConeStretch {
+  RayInterval at{1, -1};
+  bool crosses = false;  ///< the equation changes its sign from end to end: there is a crossing, however it errs
+};
+
+/// Both of them, one empty where there is but one.
+std::array<ConeStretch, 2> stretches_of(double a, double half_b, double c, double error) {
+  if (a == 0 && half_b == 0)
+    return {std::abs(c) <= error ? ConeStretch{{-kInfinity, kInfinity}, false} : ConeStretch(), ConeStretch()};
+  if (a < 0) a = -a, half_b = -half_b, c = -c;
+  const auto outer = roots_of(a, half_b, c - error), inner = roots_of(a, half_b, c + error);
+  if (!outer) return {};
+  if (!inner) return {ConeStretch{*outer, false}, ConeStretch()};
+  return {ConeStretch{{outer->enter, inner->enter}, true}, ConeStretch{{inner->leave, outer->leave}, true}};
+}
+
+/// The part of a stretch where the line's height lies within [low, high].
+RayInterval clipped(RayInterval stretch, const ConeLine& line, double low, double high) {
+  const double one = (low - line.start_height) / line.climb, other = (high - line.start_height) / line.climb;
+  if (line.climb != 0)
+    stretch.intersect(std::min(one, other), std::max(one, other));
+  else if (!(line.start_height >= low && line.start_height <= high))
+    stretch = {1, -1};
+  return stretch;
+}
+
+/// Cones are reckoned in double; what is off is the ray in instances, whose points lie up to `off` from where they
+/// should. F(p) = |across|^2 - radius(height)^2 has a gradient of 2 sqrt(F + k^2 radius^2) and second derivatives of up
+/// to 2 k^2, k^2 = 1 + slope^2: where the ray as it is meets the cone, at most E = 2 k radius off + 6 (k off)^2 is left
+/// of F on the ray as it should be; and wherever |F| <= E on this, the two rays' F differ by no more than E.
 SurfaceBounds cone_bounds(const Question& question, const Cone& cone) {
   SurfaceBounds bounds;
   const ConeFrame frame(cone);
   const double length = question.ray.direction.length();
   const Vec3d direction = question.ray.direction * (1 / length);
-  const Vec3d to = cone.base - question.ray.origin;
-  const double reach = to.length() + frame.length + cone.base_radius + cone.apex_radius;
-  const double move = 2 * question.shift(reach / length).length() + kFewUnit * reach;
-  const auto nearest = [&](const Vec3d& origin) {
-    const ConeCrossings crossings = cone_crossings(frame, origin, direction);
-    const double wanted = question.near_distance * length;
-    return std::abs(crossings.near - wanted) <= std::abs(crossings.far - wanted) ? crossings.near : crossings.far;
-  };
-  const double own = nearest(question.ray.origin);
-  const Vec3d u = (std::abs(direction.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)).cross(direction).normalized();
-  const Vec3d w = direction.cross(u);
-  int met = 0;
-  double most = 0;
-  for (const Vec3d& way : {u, -u, w, -w}) {
-    const double other = nearest(question.ray.origin + way * move);
-    if (!std::isfinite(other)) continue;
-    ++met;
-    if (std::isfinite(own)) most = std::max(most, std::abs(other - own));
+  const double reach = (cone.base - question.ray.origin).length() + frame.length + cone.base_radius + cone.apex_radius;
+  const double off = question.shift(reach / length).length() + kFewUnit * reach;
+  const double steepness = std::sqrt(1 + frame.slope * frame.slope), moved = steepness * off;
+  const double error = 2 * steepness * std::max(cone.base_radius, cone.apex_radius) * off + 6 * moved * moved;
+
+  const ConeLine line(frame, question.ray.origin, direction);
+  const double wanted = question.near_distance * length - line.shift;
+  ConeStretch nearest;
+  double nearest_way = kInfinity;
+  for (const ConeStretch& stretch : stretches_of(line.a, line.half_b, line.c, error)) {
+    const RayInterval possible = clipped(stretch.at, line, -off, frame.length + off);
+    if (possible.empty()) continue;
+    const double way = std::max({0.0, possible.enter - wanted, wanted - possible.leave});
+    if (!nearest.at.empty() && !(way < nearest_way)) continue;
+    const RayInterval certain = clipped(stretch.at, line, off, frame.length - off);
+    const bool is_certain = stretch.crosses && certain.enter == stretch.at.enter && certain.leave == stretch.at.leave;
+    nearest = {possible, is_certain}, nearest_way = way;
   }
-  bounds.side = met == 4 && std::isfinite(own)    ? SurfaceBounds::Side::inside
-                : met == 0 && !std::isfinite(own) ? SurfaceBounds::Side::outside
-                                                  : SurfaceBounds::Side::uncertain;
-  bounds.distance = own / length;
-  bounds.distance_error = (2 * most + move + 2 * kUnit * std::abs(own)) / length;
-  bounds.edge_distance = bounds.side == SurfaceBounds::Side::uncertain ? 0 : kInfinity;
-  bounds.edge_error = move * question.ray.scale();
-  const double radius = std::max(cone.base_radius, cone.apex_radius);
-  bounds.normal_error = gamma(16) + (move + length * bounds.distance_error) / radius;
+  bounds.edge_error = off * question.ray.scale();
+  if (nearest.at.empty()) {
+    bounds.side = SurfaceBounds::Side::outside;
+    bounds.distance = bounds.distance_error = bounds.edge_distance = kInfinity;
+    return bounds;
+  }
+  bounds.side = nearest.crosses ? SurfaceBounds::Side::inside : SurfaceBounds::Side::uncertain;
+  bounds.edge_distance = nearest.crosses ? kInfinity : 0;
+  // The crossing as it should be, or where there is none the middle of where one may be.
+  double own = (nearest.at.enter + nearest.at.leave) / 2;
+  const ConeCrossings crossings = cone_crossings(frame, question.ray.origin, direction);
+  for (const double crossing : {crossings.near - line.shift, crossings.far - line.shift})
+    if (crossing >= nearest.at.enter && crossing <= nearest.at.leave) own = crossing;
+  const double way = std::max(own - nearest.at.enter, nearest.at.leave - own);
+  bounds.distance = (own + line.shift) / length;
+  bounds.distance_error = way / length + 2 * kUnit * std::abs(bounds.distance);
+  // Of two vectors across the axis, one as long as the radius here: 2 |u - v| / (|u| + |v|) apart, once they are unit.
+  const double radius = cone.base_radius + frame.slope * line.height(own),
+               turned = off + length * bounds.distance_error;
+  bounds.normal_error = gamma(16) + (turned < radius ? 2 * turned / (2 * radius - turned) : 2);
   return bounds;
 }
 

@@ -31,43 +31,53 @@ struct ConeFrame {
   double slope;  ///< radius gained per unit along the axis
 };
 
+/// A line as the cone's equation sees it: how far its points lie off the surface, |across|^2 - radius(height)^2, is
+/// a s^2 + 2 half_b s + c. s is the distance along the line from its point nearest to the middle of the axis, so that
+/// a far eye costs no digits; `shift` is what lies before that.
+struct ConeLine {
+  /// direction: unit.
+  ConeLine(const ConeFrame& cone, const Vec3d& origin, const Vec3d& direction) {
+    const Vec3d middle = cone.base + cone.axis * (cone.length / 2);
+    shift = (middle - origin).dot(direction);
+    const Vec3d start = origin + direction * shift - cone.base;
+    start_height = start.dot(cone.axis), climb = direction.dot(cone.axis);
+    const Vec3d start_across = start - cone.axis * start_height, across = direction - cone.axis * climb;
+    const double r = cone.base_radius + cone.slope * start_height, k = cone.slope * climb;
+    a = across.dot(across) - k * k;
+    half_b = start_across.dot(across) - r * k;
+    c = start_across.dot(start_across) - r * r;
+  }
+
+  double shift, start_height, climb, a, half_b, c;
+
+  double height(double s) const { return start_height + s * climb; }
+};
+
 /// Distances at which the line origin + t direction (unit) meets the surface, nearer first; infinity for none.
 struct ConeCrossings {
   double near = std::numeric_limits<double>::infinity(), far = near;
 };
 
 inline ConeCrossings cone_crossings(const ConeFrame& cone, const Vec3d& origin, const Vec3d& direction) {
-  // From the line's point nearest to the middle of the axis, so that a far eye costs no digits.
-  const Vec3d middle = cone.base + cone.axis * (cone.length / 2);
-  const double shift = (middle - origin).dot(direction);
-  const Vec3d start = origin + direction * shift - cone.base;
-
-  const double start_height = start.dot(cone.axis), climb = direction.dot(cone.axis);
-  const Vec3d start_across = start - cone.axis * start_height, across = direction - cone.axis * climb;
-  // |start_across + t across|^2 = radius(t)^2 with radius(t) = r + k t.
-  const double r = cone.base_radius + cone.slope * start_height, k = cone.slope * climb;
-  const double a = across.dot(across) - k * k;
-  const double half_b = start_across.dot(across) - r * k;
-  const double c = start_across.dot(start_across) - r * r;
-
+  const ConeLine line(cone, origin, direction);
   ConeCrossings result;
   const auto offer = [&](double t) {
-    const double height = start_height + t * climb;
+    const double height = line.height(t);
     // The equation also holds on the mirror cone beyond the tip, where the radius is negative; no height between the
     // ends lies there.
     if (!(height >= 0 && height <= cone.length)) return;
-    t += shift;
+    t += line.shift;
     if (t < result.near)
       result.far = result.near, result.near = t;
     else
       result.far = std::min(result.far, t);
   };
-  const double discriminant = half_b * half_b - a * c;
+  const double discriminant = line.half_b * line.half_b - line.a * line.c;
   if (!(discriminant >= 0)) return result;
   // The root whose two terms have one sign, and the other by the product of both: neither cancels.
-  const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
-  if (q != 0) offer(c / q);
-  if (a != 0) offer(q / a);
+  const double q = -(line.half_b + std::copysign(std::sqrt(discriminant), line.half_b));
+  if (q != 0) offer(line.c / q);
+  if (line.a != 0) offer(q / line.a);
   return result;
 }
 

@@ -7,21 +7,13 @@
 
 #include "geometry/error.h"
 #include "geometry/instance_transform.h"
+#include "geometry/quadric_bounds.h"
 #include "geometry/reference_intersector.h"
 #include "geometry/sphere_bounded_objects.h"
 #include "geometry/sphere_hierarchy.h"
 
 namespace raytree {
 namespace {
-
-/// A sphere about what an instance makes of a group's: wide enough for what rounds on the way in, kMostCancellation
-/// times as much as a sphere test does.
-BoundingSphere sphere_about_instance(const Instance& instance, const BoundingSphere& group) {
-  const InstanceTransform transform(instance);
-  const Vec3d center = transform.point(group.center);
-  const double radius = group.radius * transform.stretch();
-  return {center, radius + kMostCancellation * kSphereSlack * (radius + center.length())};
-}
 
 /// A ray in the group's space. Distances along it stay as they are, in lengths of its direction.
 ObjectRay ray_inside(const InstanceTransform& transform, const ObjectRay& ray) {
@@ -73,7 +65,7 @@ struct SphereBoundedIntersector::State {
       top.spheres = top.objects.spheres();
       top.spheres.reserve(top.spheres.size() + shapes.instances.size());
       for (const Instance& instance : shapes.instances)
-        top.spheres.push_back(sphere_about_instance(instance, about[instance.group]));
+        top.spheres.push_back(sphere_about(InstanceTransform(instance), about[instance.group]));
     }
     finish(top);
   }

@@ -8,6 +8,7 @@
 
 #include "geometry/newell.h"
 #include "geometry/patch_subdivision.h"
+#include "geometry/quadric_bounds.h"
 
 namespace raytree {
 namespace {
@@ -73,8 +74,7 @@ ObjectList::ObjectList(const BoundedShapes& shapes, double sphere_pixels)
     add(round(shapes.spheres.center_radius[i]), kSphereGeometry, i);
   for (std::size_t i = 0; i < shapes.discs.shape.size(); ++i)
     add(round(shapes.discs.center_radius[i]), kDiscGeometry, i);
-  for (std::size_t i = 0; i < shapes.cones.shape.size(); ++i)
-    add(sphere_about(round(shapes.cones.base_radius[i]), round(shapes.cones.apex_radius[i])), kConeGeometry, i);
+  for (std::size_t i = 0; i < shapes.cones.shape.size(); ++i) add(sphere_about(shapes.cones[i]), kConeGeometry, i);
   for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
     const MeshEntry& entry = shapes.meshes[m];
     const GeometryId geometry = kFirstMeshGeometry + static_cast<GeometryId>(m);

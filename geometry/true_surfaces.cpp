@@ -74,7 +74,8 @@ void move_to_true_surface(const ShapeSet& shapes, double sphere_pixels, const Ve
 void move_to_true_surfaces(const ShapeSet& shapes, double sphere_pixels, const RayBatch& rays, const HitBatch& hits,
                            SurfaceBatch& surfaces) {
   for (std::size_t i = 0; i < rays.size; ++i) {
-    if (hits.geometry[i] == kNoGeometry) continue;
+    // What is round is what it is: its surface need not be taken out of the batch and put back.
+    if (hits.geometry[i] == kNoGeometry || hits.geometry[i] < kFirstMeshGeometry) continue;
     SurfacePoint point = surfaces[i];
     move_to_true_surface(shapes, sphere_pixels, rays.origin(i), rays.direction(i), hits[i], point);
     surfaces.set(i, point);

@@ -15,6 +15,12 @@
 namespace raytree::test {
 
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+/// How often a text holds a part; overlaps count.
+inline std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
 
 /// All bytes of a file; empty where there is none.
 inline std::string file_text(const std::string& path) {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "benchmarks/report_page.h"
+#include "benchmarks/svg_plot.h"
 
 namespace raytree::benchmarks {
 namespace {
@@ -16,13 +17,10 @@ constexpr double kLeft = 84, kRight = 24, kTop = 22, kBottom = 62;
 constexpr double kLetterWidth = 6.7, kLetterHeight = 12;  ///< of labels, about
 constexpr double kDecadesDown = 1.5;  ///< errors smaller than the floor by more than so much stand on the lower edge
 
+/// Beyond the common style.
 constexpr const char* kDrawingStyle = R"(
-.chart { --c-paper: #ffffff; --c-ink: #1d2126; --c-quiet: #667079; --c-line: #e3e0d9; --c-front: #1f5fa8; --c-dominated: #a9aeb4;
-  --c-floor: #a86a00; font: 12px system-ui, "Segoe UI", Helvetica, Arial, sans-serif; }
-@media (prefers-color-scheme: dark) { .chart { --c-paper: #1b1f23; --c-ink: #e6e4df; --c-quiet: #98a1a9; --c-line: #30363c;
-  --c-front: #7db4f0; --c-dominated: #666e76; --c-floor: #e0a94a; } }
-.chart .paper { fill: var(--c-paper); } .chart text { fill: var(--c-ink); } .chart .quiet { fill: var(--c-quiet); }
-.chart .grid { stroke: var(--c-line); stroke-width: 1; } .chart .frame { fill: none; stroke: var(--c-quiet); stroke-width: 1; }
+.chart { --c-front: #1f5fa8; --c-dominated: #a9aeb4; --c-floor: #a86a00; }
+@media (prefers-color-scheme: dark) { .chart { --c-front: #7db4f0; --c-dominated: #666e76; --c-floor: #e0a94a; } }
 .chart .front { fill: none; stroke: var(--c-front); stroke-width: 2; }
 .chart .knob { fill: none; stroke: var(--c-dominated); stroke-width: 1; stroke-dasharray: 2 3; opacity: .7; }
 .chart .bar { stroke: var(--c-dominated); stroke-width: 1; } .chart .bar.best { stroke: var(--c-front); }
@@ -40,18 +38,6 @@ struct LabelBox {
     return left < o.right && o.left < right && top < o.bottom && o.top < bottom;
   }
 };
-
-/// A logarithmic axis onto pixels.
-struct LogAxis {
-  double low, high, from, to;
-  double at(double value) const {
-    return from + (to - from) * (std::log(value) - std::log(low)) / (std::log(high) - std::log(low));
-  }
-};
-
-std::string tick_label(double value, bool seconds) {
-  return seconds ? short_seconds(value) : fmt::format("{:g}", value);
-}
 
 /// Words that tell a point of the front from others: values of the crossed set would be too long for a drawing.
 std::string label_of(const ChartPoint& point) {
@@ -96,9 +82,9 @@ class ChartDrawing {
   std::string text() {
     out_ = fmt::format(
         "<svg class=\"chart\" data-metric=\"{}\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" "
-        "role=\"img\">\n<title>Speed against accuracy: {}, {}</title>\n<style>{}</style>\n"
+        "role=\"img\">\n<title>Speed against accuracy: {}, {}</title>\n<style>{}{}</style>\n"
         "<rect class=\"paper\" width=\"{}\" height=\"{}\"/>\n",
-        metric_.key, kDrawingWidth, kDrawingHeight, escaped_html(data_.scene), escaped_html(metric_.label),
+        metric_.key, kDrawingWidth, kDrawingHeight, escaped_html(data_.scene), escaped_html(metric_.label), kPlotStyle,
         kDrawingStyle, kDrawingWidth, kDrawingHeight);
     draw_axes();
     draw_floor();
@@ -119,30 +105,19 @@ class ChartDrawing {
   bool on_front(std::size_t i) const { return std::find(front_.begin(), front_.end(), i) != front_.end(); }
 
   void line(const char* kind, double x0, double y0, double x1, double y1) {
-    out_ += fmt::format("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n", kind, x0, y0,
-                        x1, y1);
+    out_ += svg_line(fmt::format("class=\"{}\"", kind), x0, y0, x1, y1);
   }
   void words(const char* kind, const char* anchor, double x, double y, const std::string& text) {
-    out_ += fmt::format("<text class=\"{}\" text-anchor=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kind, anchor, x,
-                        y, escaped_html(text));
+    out_ += svg_text(fmt::format("class=\"{}\"", kind), anchor, x, y, text);
   }
 
   void draw_axes() {
-    for (const double tick : logarithmic_ticks(x_.low, x_.high)) {
-      line("grid", x_.at(tick), y_.from, x_.at(tick), y_.to);
-      words("quiet", "middle", x_.at(tick), y_.from + 18, tick_label(tick, true));
-    }
-    for (const double tick : logarithmic_ticks(y_.low, y_.high)) {
-      line("grid", x_.from, y_.at(tick), x_.to, y_.at(tick));
-      words("quiet", "end", x_.from - 8, y_.at(tick) + 4, tick_label(tick, false));
-    }
-    out_ += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", kLeft, kTop,
-                        kDrawingWidth - kLeft - kRight, kDrawingHeight - kTop - kBottom);
-    words("", "middle", (x_.from + x_.to) / 2, kDrawingHeight - 18,
-          fmt::format("processor time of a render (preparing and tracing, {} thread{})", data_.threads,
-                      data_.threads == 1 ? "" : "s"));
-    out_ += fmt::format("<text text-anchor=\"middle\" transform=\"translate(18 {:.1f}) rotate(-90)\">{}</text>\n",
-                        (y_.from + y_.to) / 2, escaped_html(metric_.label));
+    for (const double tick : logarithmic_ticks(x_.low, x_.high)) x_.ticks.emplace_back(tick, short_seconds(tick));
+    for (const double tick : logarithmic_ticks(y_.low, y_.high)) y_.ticks.emplace_back(tick, fmt::format("{:g}", tick));
+    x_.title = fmt::format("processor time of a render (preparing and tracing, {} thread{})", data_.threads,
+                           data_.threads == 1 ? "" : "s");
+    y_.title = metric_.label;
+    out_ += plot_frame(x_, y_);
   }
 
   void draw_floor() {
@@ -263,25 +238,12 @@ class ChartDrawing {
   const MetricInfo& metric_;
   std::vector<std::size_t> front_;
   double floor_;
-  LogAxis x_{}, y_{};
+  PlotAxis x_{}, y_{};
   std::vector<LabelBox> taken_;
   std::string out_;
 };
 
 }  // namespace
-
-std::vector<double> logarithmic_ticks(double low, double high) {
-  constexpr std::size_t kMostTicks = 9;
-  std::vector<double> fine, powers;
-  for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, power) <= high; ++power)
-    for (const int digit : {1, 2, 5}) {
-      const double tick = digit * std::pow(10.0, power);
-      if (tick < low || tick > high) continue;
-      fine.push_back(tick);
-      if (digit == 1) powers.push_back(tick);
-    }
-  return fine.size() > kMostTicks ? powers : fine;
-}
 
 std::string chart_svg(const ChartData& data, const MetricInfo& metric) { return ChartDrawing(data, metric).text(); }
 

@@ -2,14 +2,10 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "benchmarks/chart/chart_data.h"
 
 namespace raytree::benchmarks {
-
-/// 1, 2 and 5 times powers of ten within [low, high]; powers of ten alone where there would be more than nine.
-std::vector<double> logarithmic_ticks(double low, double high);
 
 /// An SVG element that can stand alone or in a page, light and dark by the reader's choice: the front as a line, its
 /// points named, dominated points greyed, quartiles of time and the reference's own error as bars, the floor below

@@ -1,4 +1,4 @@
-// Graphs of the stability suite as inline SVG, in the colors of the page's sheet.
+// Graphs of the stability suite as inline SVG, drawn as those of other benchmarks are.
 #pragma once
 
 #include <string>

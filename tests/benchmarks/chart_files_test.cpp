@@ -17,18 +17,8 @@ namespace raytree::benchmarks {
 namespace {
 
 using test::contains;
+using test::count_of;
 using test::TemporaryFolder;
-
-std::size_t count_of(const std::string& text, const std::string& part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
-
-TEST(ChartDrawing, TicksAreRoundNumbers) {
-  EXPECT_EQ(logarithmic_ticks(0.9, 30), (std::vector<double>{1, 2, 5, 10, 20}));
-  EXPECT_EQ(logarithmic_ticks(0.5, 2e4), (std::vector<double>{1, 10, 100, 1000, 10000}));
-}
 
 TEST(ChartDrawing, ShowsEveryPointTheFrontTheFloorAndTheBars) {
   const ChartData data = test::sample_chart();
