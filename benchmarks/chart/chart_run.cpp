@@ -230,6 +230,7 @@ class ChartMeasurement {
     point.wall_seconds = {render.wall_seconds};
     point.build_seconds = render.build_seconds;
     point.rays = render.rays;
+    if (render.peak_bytes) point.peak_bytes = {static_cast<double>(*render.peak_bytes)};
     point.film_bytes = render.film_bytes;
     point.array_bytes = render.array_bytes;
     point.tracer_bytes = render.tracer_bytes;
@@ -274,6 +275,7 @@ class ChartMeasurement {
       if (!render.complete) return any;
       point.cpu_seconds.push_back(render.cpu_seconds);
       point.wall_seconds.push_back(render.wall_seconds);
+      if (render.peak_bytes) point.peak_bytes.push_back(static_cast<double>(*render.peak_bytes));
       point.build_seconds = std::min(point.build_seconds, render.build_seconds);
       if (point.picture_hash != hash_of(render.film)) point.repeats = false;
       if (stale_.erase(i) != 0) judge(point, render.film);
