@@ -118,8 +118,12 @@ ChartData data_from_json(const Json& json) {
   data.height = json.at("height");
   data.threads = json.at("threads");
   const Json& reference = json.at("reference");
-  data.plan = {reference.at("grid"), reference.at("first").get<Words>(), reference.at("last").get<Words>(),
-               reference.at("depth_residual"), reference.at("words")};
+  data.plan = {reference.at("grid"),
+               reference.at("first").get<Words>(),
+               reference.at("last").get<Words>(),
+               reference.at("depth_residual"),
+               reference.at("cutoff"),
+               reference.at("words")};
   data.reference_seconds = reference.at("seconds");
   data.floor = errors_from_json(reference.at("own_error"));
   for (const Json& point : json.at("points")) data.points.push_back(point_from_json(point));
@@ -178,6 +182,7 @@ std::string chart_json(const ChartData& data) {
   json["reference"] = {{"command", data.reference_command},
                        {"words", data.plan.words},
                        {"depth_residual", data.plan.depth_residual},
+                       {"cutoff", data.plan.cutoff},
                        {"grid", data.plan.grid},
                        {"first", data.plan.first},
                        {"last", data.plan.last},

@@ -107,6 +107,21 @@ TEST(ChartCommand, GoesOnWhereItStoppedAndStartsAfreshOnRequest) {
   EXPECT_FALSE(contains(run_program(with(words, {"--set", "render.depth=3", "--fresh"})).err, "from before"));
 }
 
+// Of itself a second affords the smallest of pictures here; what is there already is not thrown away for it.
+TEST(ChartCommand, AShorterRunGoesOnWithALargerChart) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words{"chart", "glass", "-o", folder.path("chart"), "--budget", "1s"};
+  ASSERT_EQ(run_program(with(words, {"--size", "150x100"})).status, 0);
+  const ProgramResult again = run_program(words);
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(contains(again.err, "from before")) << again.err;
+  EXPECT_EQ(chart_in(folder, "chart")["width"], 150);
+  ASSERT_EQ(run_program(with(words, {"--fresh"})).status, 0);
+  const Json fresh = chart_in(folder, "chart");
+  EXPECT_EQ(fresh["width"], 120);
+  EXPECT_TRUE(contains(fresh["points"][0]["command"], "--size 120x80")) << "the size is said";
+}
+
 TEST(ChartCommand, AnInterruptionKeepsWhatIsDone) {
   const TemporaryFolder folder;
   ProgramOptions options;
