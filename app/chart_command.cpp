@@ -19,6 +19,7 @@
 #include "app/progress.h"
 #include "app/render_options.h"
 #include "app/scene_argument.h"
+#include "benchmarks/chart/chart_cost.h"
 #include "benchmarks/chart/chart_files.h"
 #include "benchmarks/chart/chart_run.h"
 #include "renderer/image_file.h"
@@ -28,8 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using benchmarks::ChartScene;
-
-constexpr int kChartWidth = 400;  ///< pixels, where --size says nothing; the scene's own if that is less
 
 struct ChartFlags {
   std::string scene, output, size, camera, budget = "2m", threads;
@@ -75,7 +74,7 @@ std::optional<ChartFlags> parse_chart_flags(const Words& words) {
       ->type_name("FLAGS")
       ->allow_extra_args(false)
       ->group("Scene");
-  command.add_option("--size", flags.size, "Image size in pixels; default: 400 wide at most")
+  command.add_option("--size", flags.size, "Image size in pixels; default: 400 wide at most, less for dear scenes")
       ->type_name("WxH")
       ->group("Scene");
   command.add_option("--camera", flags.camera, "Camera by its name; default: the scene's first")
@@ -130,21 +129,23 @@ Words joined_words(Words first, const Words& last) {
   return first;
 }
 
-/// The scene and what is alike in all settings, as `raytree render` takes it. The size is always said, so that commands
-/// mean what was measured.
-Words common_words(const ChartFlags& flags, Warnings& warnings) {
+/// The scene and what is alike in all settings but the size, as `raytree render` takes it.
+Words scene_words(const ChartFlags& flags) {
   Words words{flags.scene};
   for (const std::string& set : flags.sets) words.insert(words.end(), {"--set", set});
   if (!flags.camera.empty()) words.insert(words.end(), {"--camera", flags.camera});
-  std::string size = flags.size;
-  if (size.empty()) {
-    const ImageDescription image = chart_scene(words, warnings).description.image;
-    const int width = std::min(image.width, kChartWidth);
-    size = fmt::format("{}x{}", width, std::max(1, static_cast<int>(std::int64_t{image.height} * width / image.width)));
-  }
-  words.insert(words.end(), {"--size", size});
   return words;
 }
+
+/// Reads the scene under these words and a setting's.
+benchmarks::ChartSceneMaker scene_maker(const Words& words) {
+  return [words](const Words& flags) {
+    Warnings same;
+    return chart_scene(joined_words(words, flags), same);
+  };
+}
+
+Words size_words(int width, int height) { return {"--size", fmt::format("{}x{}", width, height)}; }
 
 class ChartCommand {
  public:
@@ -159,23 +160,23 @@ class ChartCommand {
     scene.scene = flags_.scene;
     check_scene_flags(scene);
     check_folder(flags_.output);
-    Warnings warnings;
-    const Words common = common_words(flags_, warnings);
-    options_.command = joined_words({"raytree", "render"}, common);
-    options_.make = [common](const Words& flags) {
-      Warnings same;
-      return chart_scene(joined_words(common, flags), same);
-    };
+    const auto earlier = flags_.fresh ? std::nullopt : benchmarks::read_earlier_chart(flags_.output);
+    const Words own_words = scene_words(flags_);
     for (const std::string& line : flags_.also) {
       options_.added.push_back(split_words(line));
-      options_.make(options_.added.back());  // what is wrong is said before anything is measured
+      scene_maker(own_words)(options_.added.back());  // what is wrong is said before anything is measured
     }
+    // The size is always said, so that commands mean what was measured.
+    const Words common =
+        joined_words(own_words, flags_.size.empty() ? chosen_size(earlier) : Words{"--size", flags_.size});
+    options_.command = joined_words({"raytree", "render"}, common);
+    options_.make = scene_maker(common);
     options_.version = version();
     options_.stop = &interruption_.stop();
     options_.on_phase = [this](const std::string& text) { progress_.phase(text); };
     options_.keep_reference = [this](const Film& film) { benchmarks::write_reference(flags_.output, film); };
     options_.save = [this](const benchmarks::ChartData& data) { benchmarks::write_chart(flags_.output, data); };
-    const auto earlier = flags_.fresh ? std::nullopt : benchmarks::read_earlier_chart(flags_.output);
+    Warnings warnings;
     const benchmarks::MeasuredChart chart = measure_chart(options_, earlier ? &*earlier : nullptr, warnings);
     progress_.clear();
     if (!flags_.quiet) print_warnings(warnings, false);
@@ -185,6 +186,21 @@ class ChartCommand {
   }
 
  private:
+  /// What the budget affords, or what an earlier chart of the scene has if that is larger: a shorter run goes on with
+  /// it. Throws the interruption's Error where it was stopped.
+  Words chosen_size(const std::optional<benchmarks::EarlierChart>& earlier) {
+    progress_.phase("looking how large a picture the budget affords");
+    const benchmarks::ChartSceneMaker make = scene_maker(scene_words(flags_));
+    const std::optional<benchmarks::ChartSize> size =
+        affordable_size(make, options_.budget_seconds, options_.threads, &interruption_.stop());
+    if (!size) throw Error(ErrorKind::failure, {flags_.scene, 0, ""}, "interrupted");
+    if (earlier && earlier->data.width > size->width) {
+      Words words = size_words(earlier->data.width, earlier->data.height);
+      if (scene_hash(make(words)) == earlier->data.scene_hash) return words;
+    }
+    return size_words(size->width, size->height);
+  }
+
   void report(const benchmarks::MeasuredChart& chart) const {
     std::string text;
     for (const benchmarks::Finding& finding : findings_of(chart.data)) text += "- " + finding.text + "\n";

@@ -4,13 +4,14 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "benchmarks/child_process.h"
 #include "benchmarks/recording_intersector.h"
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/resident_memory.h"
 #include "benchmarks/rows.h"
 #include "benchmarks/seam_comparison.h"
 #include "geometry/error.h"
@@ -21,11 +22,9 @@ namespace {
 constexpr double kMostGibibytes = 0.3, kMostOverBare = 1.1;
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
-/// A figure of /proc/self/status, bytes.
-double status_bytes(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with(key + ":")) return 1024 * std::stod(line.substr(key.size() + 1));
+/// Throws Error where the system does not tell.
+double memory_figure(const std::string& key) {
+  if (const std::optional<std::uint64_t> bytes = status_bytes(key)) return static_cast<double>(*bytes);
   throw Error(ErrorKind::failure, {"/proc/self/status", 0, ""}, "no " + key);
 }
 
@@ -67,12 +66,12 @@ Figure followed_together(int edge, const MeasureContext& context) {
 
 std::string instances_memory_json() {
   SceneDescription description = instances_scene();
-  const double before = status_bytes("VmRSS");
+  const double before = memory_figure("VmRSS");
   const Scene scene = prepared(std::move(description));
   return nlohmann::json{
       {"before", before},
-      {"resident", status_bytes("VmRSS")},
-      {"peak", status_bytes("VmHWM")},
+      {"resident", memory_figure("VmRSS")},
+      {"peak", memory_figure("VmHWM")},
       {"arrays", scene.summary.array_bytes},
       {"embree", scene.summary.intersector_bytes},
       {"instances", scene.summary.instances},

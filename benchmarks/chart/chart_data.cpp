@@ -78,6 +78,25 @@ std::string listed_in_words(const std::vector<std::string>& words) {
   return text;
 }
 
+std::string error_words(double ErrorMetrics::*metric, double value) {
+  return metric == &ErrorMetrics::over_step ? fmt::format("{:.2g} % of the pixels", 100 * value) : short_number(value);
+}
+
+/// Where settings differ in peak memory by more than measuring does.
+void add_memory_finding(const ChartData& data, const ChartPoint& defaults, std::vector<Finding>& findings) {
+  constexpr double kToldFactor = 1.25, kToldBytes = 2e6;
+  const auto [least, most] =
+      std::minmax_element(data.points.begin(), data.points.end(),
+                          [](const ChartPoint& a, const ChartPoint& b) { return a.memory_bytes() < b.memory_bytes(); });
+  const double low = least->memory_bytes(), high = most->memory_bytes();
+  if (defaults.peak_bytes.empty() || high < kToldFactor * low || high < low + kToldBytes) return;
+  findings.push_back(
+      {fmt::format("Peak memory lies between {:.3g} MB ({}) and {:.3g} MB ({}); the scene's own "
+                   "settings take {:.3g} MB.",
+                   1e-6 * low, flags_name(*least), 1e-6 * high, flags_name(*most), 1e-6 * defaults.memory_bytes()),
+       static_cast<std::size_t>(most - data.points.begin())});
+}
+
 /// What turning each knob alone brings over the defaults.
 void add_knob_findings(const ChartData& data, const ChartPoint& defaults, std::vector<Finding>& findings) {
   const double time = defaults.cpu().median, error = defaults.errors.rmse;
@@ -161,9 +180,17 @@ std::optional<double> cost_of_halving(const std::vector<CostAndError>& front, do
 
 std::vector<Finding> findings_of(const ChartData& data) {
   std::vector<Finding> findings;
-  const auto say = [&](const std::string& what, std::optional<std::size_t> index) {
+  // `metric` is to be at most `bound`, which says nothing where the reference itself is further off.
+  const auto say = [&](const std::string& what, std::optional<std::size_t> index, double ErrorMetrics::*metric,
+                       double bound) {
+    const double floor = data.floor.*metric;
     if (!index) {
-      findings.push_back({what + ": none of the settings measured.", std::nullopt});
+      findings.push_back({floor > bound
+                              ? fmt::format("{}: not known; the reference's own error is {}. A larger budget makes a "
+                                            "better one.",
+                                            what, error_words(metric, floor))
+                              : what + ": none of the settings measured.",
+                          std::nullopt});
       return;
     }
     const ChartPoint& point = data.points[*index];
@@ -171,18 +198,24 @@ std::vector<Finding> findings_of(const ChartData& data) {
         {fmt::format("{}: {}; {} of processor time, RMSE {}, {:.2g} % of the pixels off by more than 1/255, "
                      "FLIP {}.",
                      what, flags_name(point), short_seconds(point.cpu().median), short_number(point.errors.rmse),
-                     100 * point.errors.over_step, short_number(point.errors.flip)),
+                     100 * point.errors.over_step, short_number(point.errors.flip)) +
+             (point.errors.*metric < floor
+                  ? fmt::format(" The reference's own error, {}, is larger: what lies below cannot be told apart.",
+                                error_words(metric, floor))
+                  : ""),
          index});
   };
   say("Cheapest setting under 1/255 (RMSE in linear light)",
-      cheapest(data, [](const ChartPoint& point) { return point.repeats && point.errors.rmse < kDisplayStep; }));
+      cheapest(data, [](const ChartPoint& point) { return point.repeats && point.errors.rmse < kDisplayStep; }),
+      &ErrorMetrics::rmse, kDisplayStep);
   say("Cheapest setting with at most 1 % of the pixels off by more than 1/255 after the view",
-      cheapest(data, [](const ChartPoint& point) { return point.repeats && point.errors.over_step <= kFewPixels; }));
+      cheapest(data, [](const ChartPoint& point) { return point.repeats && point.errors.over_step <= kFewPixels; }),
+      &ErrorMetrics::over_step, kFewPixels);
   const auto most_accurate =
       std::min_element(data.points.begin(), data.points.end(),
                        [](const ChartPoint& a, const ChartPoint& b) { return a.errors.rmse < b.errors.rmse; });
   if (most_accurate != data.points.end())
-    say("Most accurate setting", static_cast<std::size_t>(most_accurate - data.points.begin()));
+    say("Most accurate setting", static_cast<std::size_t>(most_accurate - data.points.begin()), &ErrorMetrics::rmse, 0);
   const std::vector<std::size_t> indices = chart_front(data, primary_metric());
   std::vector<CostAndError> front;
   for (const std::size_t i : indices)
@@ -211,6 +244,7 @@ std::vector<Finding> findings_of(const ChartData& data) {
            share > 1 - kTold ? index : *better});
     }
     add_knob_findings(data, *defaults, findings);
+    add_memory_finding(data, *defaults, findings);
   }
   for (const ChartPoint& point : data.points)
     if (!point.repeats)

@@ -22,7 +22,8 @@ struct ChartPoint {
   std::vector<double> cpu_seconds, wall_seconds;  ///< a sample each repetition
   double build_seconds = 0;
   std::array<std::uint64_t, kRayKindCount> rays{};
-  std::uint64_t film_bytes = 0, array_bytes = 0, tracer_bytes = 0;
+  std::vector<double> peak_bytes;  ///< a sample each repetition; none where the system does not tell
+  std::uint64_t film_bytes = 0, array_bytes = 0, tracer_bytes = 0;  ///< by their sizes
   ErrorMetrics errors;
   std::vector<std::byte> picture;  ///< PNG
   std::string picture_hash;        ///< of its light, bit for bit
@@ -30,7 +31,11 @@ struct ChartPoint {
 
   Spread cpu() const { return spread_of(cpu_seconds); }
   Spread wall() const { return spread_of(wall_seconds); }
-  std::uint64_t memory_bytes() const { return film_bytes + array_bytes + tracer_bytes; }
+  std::uint64_t counted_bytes() const { return film_bytes + array_bytes + tracer_bytes; }
+  /// Peak, median of the repetitions; where it could not be measured, what is counted by sizes.
+  double memory_bytes() const {
+    return peak_bytes.empty() ? static_cast<double>(counted_bytes()) : spread_of(peak_bytes).median;
+  }
 };
 
 struct ChartData {

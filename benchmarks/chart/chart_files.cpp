@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kChartVersion = 1;  ///< of chart.json
+constexpr int kChartVersion = 2;  ///< of chart.json
 constexpr const char* kParts[] = {"defaults", "ends", "between", "added", "crossed"};
 
 std::string in_folder(const std::string& folder, const std::string& name) { return (fs::path(folder) / name).string(); }
@@ -69,8 +69,11 @@ Json point_json(const ChartPoint& point) {
                   {"shadow", point.rays[1]},
                   {"reflected", point.rays[2]},
                   {"refracted", point.rays[3]}};
-  json["memory_bytes"] = {
-      {"film", point.film_bytes}, {"arrays", point.array_bytes}, {"intersector", point.tracer_bytes}};
+  json["memory_bytes"] = {{"peak", point.peak_bytes.empty() ? Json() : Json(spread_of(point.peak_bytes).median)},
+                          {"peak_samples", point.peak_bytes},
+                          {"film", point.film_bytes},
+                          {"arrays", point.array_bytes},
+                          {"intersector", point.tracer_bytes}};
   json["errors"] = errors_json(point.errors);
   json["picture_hash"] = point.picture_hash;
   json["repeats"] = point.repeats;
@@ -93,6 +96,7 @@ ChartPoint point_from_json(const Json& json) {
   const Json& rays = json.at("rays");
   point.rays = {rays.at("primary"), rays.at("shadow"), rays.at("reflected"), rays.at("refracted")};
   const Json& memory = json.at("memory_bytes");
+  point.peak_bytes = memory.at("peak_samples").get<std::vector<double>>();
   point.film_bytes = memory.at("film");
   point.array_bytes = memory.at("arrays");
   point.tracer_bytes = memory.at("intersector");
@@ -114,8 +118,12 @@ ChartData data_from_json(const Json& json) {
   data.height = json.at("height");
   data.threads = json.at("threads");
   const Json& reference = json.at("reference");
-  data.plan = {reference.at("grid"), reference.at("first").get<Words>(), reference.at("last").get<Words>(),
-               reference.at("depth_residual"), reference.at("words")};
+  data.plan = {reference.at("grid"),
+               reference.at("first").get<Words>(),
+               reference.at("last").get<Words>(),
+               reference.at("depth_residual"),
+               reference.at("cutoff"),
+               reference.at("words")};
   data.reference_seconds = reference.at("seconds");
   data.floor = errors_from_json(reference.at("own_error"));
   for (const Json& point : json.at("points")) data.points.push_back(point_from_json(point));
@@ -174,6 +182,7 @@ std::string chart_json(const ChartData& data) {
   json["reference"] = {{"command", data.reference_command},
                        {"words", data.plan.words},
                        {"depth_residual", data.plan.depth_residual},
+                       {"cutoff", data.plan.cutoff},
                        {"grid", data.plan.grid},
                        {"first", data.plan.first},
                        {"last", data.plan.last},
@@ -193,16 +202,17 @@ std::string chart_csv(const ChartData& data) {
   const std::vector<std::size_t> front = chart_front(data, kMetrics.front());
   std::string csv =
       "point,knob,value,front,cpu_seconds,cpu_low,cpu_high,wall_seconds,wall_low,wall_high,repetitions,"
-      "build_seconds,rays_primary,rays_shadow,rays_reflected,rays_refracted,memory_bytes";
+      "build_seconds,rays_primary,rays_shadow,rays_reflected,rays_refracted,peak_memory_bytes,counted_memory_bytes";
   for (const MetricInfo& metric : kMetrics) csv += fmt::format(",{}", metric.key);
   csv += ",command\n";
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const ChartPoint& point = data.points[i];
     const Spread cpu = point.cpu(), wall = point.wall();
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", i, quoted_csv(point.setting.knob),
+    const std::string peak = point.peak_bytes.empty() ? "" : fmt::format("{:.0f}", point.memory_bytes());
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", i, quoted_csv(point.setting.knob),
                        quoted_csv(point.setting.value), std::count(front.begin(), front.end(), i), cpu.median, cpu.low,
                        cpu.high, wall.median, wall.low, wall.high, cpu.count, point.build_seconds, point.rays[0],
-                       point.rays[1], point.rays[2], point.rays[3], point.memory_bytes());
+                       point.rays[1], point.rays[2], point.rays[3], peak, point.counted_bytes());
     for (const MetricInfo& metric : kMetrics) {
       const double value = point.errors.*metric.value;
       csv += std::isfinite(value) ? fmt::format(",{}", value) : ",";

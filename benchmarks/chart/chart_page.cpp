@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <tuple>
 
 #include "benchmarks/chart/chart_page_script.h"
 #include "benchmarks/chart/chart_svg.h"
@@ -26,7 +27,7 @@ button[aria-pressed="true"] { border-color: var(--accent); color: var(--accent);
 svg.chart { display: block; width: 100%; height: auto; }
 .looked-at { display: grid; grid-template-columns: minmax(0, 3fr) minmax(0, 2fr); gap: 28px; margin-top: 16px; }
 .looked-at pre { background: var(--paper); border: 1px solid var(--line); border-radius: 6px; padding: 10px 12px; margin-bottom: 8px; }
-.looked-at td { padding: 2px 0; } .looked-at td.number { padding-left: 16px; } #picture { display: block; margin-top: 12px; width: 100%; max-width: 560px; border-radius: 4px; }
+.looked-at td { padding: 2px 0; } .looked-at td.number { padding-left: 16px; } #picture { display: block; margin-top: 12px; width: 100%; max-width: 560px; border-radius: 4px; image-rendering: pixelated; }
 .panes { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 12px; }
 .panes canvas { width: 100%; display: block; border-radius: 4px; cursor: grab; touch-action: none; background: #000; }
 .wide { overflow-x: auto; } #table { font-size: 13px; } #table th { cursor: pointer; user-select: none; }
@@ -66,9 +67,10 @@ std::string rays_text(const ChartPoint& point) {
 }
 
 std::string memory_text(const ChartPoint& point) {
-  return fmt::format("{:.3g} MB (tracer {:.3g}, shapes {:.3g}, film {:.3g})",
-                     1e-6 * static_cast<double>(point.memory_bytes()), 1e-6 * static_cast<double>(point.tracer_bytes),
-                     1e-6 * static_cast<double>(point.array_bytes), 1e-6 * static_cast<double>(point.film_bytes));
+  const auto megabytes = [](auto bytes) { return 1e-6 * static_cast<double>(bytes); };
+  return fmt::format("{:.3g} MB ({}tracer {:.3g}, shapes {:.3g}, film {:.3g})", megabytes(point.memory_bytes()),
+                     point.peak_bytes.empty() ? "by sizes: " : "of it ", megabytes(point.tracer_bytes),
+                     megabytes(point.array_bytes), megabytes(point.film_bytes));
 }
 
 std::string error_text(const MetricInfo& metric, double value) {
@@ -132,8 +134,9 @@ constexpr const char* kPicturesSection =
     "id=\"picture-a\"></select></label>\n"
     "<button id=\"swap\" title=\"swap A and B\">\u21c4</button>\n<label>B <select id=\"picture-b\"></select></label>\n"
     "<label>error times <input id=\"gain\" type=\"range\" min=\"0\" max=\"7\" step=\"1\" value=\"4\"></label></div>\n"
-    "<div class=\"panes\"><figure><canvas id=\"canvas-a\"></canvas><figcaption>A</figcaption></figure>\n"
-    "<figure><canvas id=\"canvas-b\"></canvas><figcaption>B</figcaption></figure>\n"
+    "<div class=\"panes\"><figure><canvas id=\"canvas-a\"></canvas><figcaption>A: <span "
+    "id=\"name-a\"></span></figcaption></figure>\n"
+    "<figure><canvas id=\"canvas-b\"></canvas><figcaption>B: <span id=\"name-b\"></span></figcaption></figure>\n"
     "<figure><canvas id=\"canvas-error\"></canvas><figcaption>A - B: <span "
     "id=\"map-words\"></span></figcaption></figure></div>\n"
     "<p class=\"quiet\">The wheel zooms, dragging moves, a double click shows all; the three move "
@@ -144,24 +147,40 @@ std::string number_cell(double value, const std::string& text) {
                      std::isfinite(value) ? fmt::format("{}", value) : "", escaped_html(text));
 }
 
+/// The scene's own settings, the user's, one knob after the other, several at once; each from quick to slow.
+std::vector<std::size_t> table_order(const ChartData& data) {
+  const auto rank = [&](std::size_t i) {
+    const ChartSetting& setting = data.points[i].setting;
+    const int part = setting.part == SweepPart::defaults  ? 0
+                     : setting.part == SweepPart::added   ? 1
+                     : setting.part == SweepPart::crossed ? 3
+                                                          : 2;
+    return std::tuple(part, setting.knob, data.points[i].cpu().median);
+  };
+  std::vector<std::size_t> order(data.points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+  return order;
+}
+
 std::string settings_table(const ChartData& data) {
   const std::vector<std::size_t> front = chart_front(data, kMetrics.front());
   std::string html =
       "<section class=\"card\"><h2>All settings</h2><div class=\"wide\">\n<table "
       "id=\"table\"><thead><tr><th>knob</th><th>value</th>"
       "<th class=\"number\">processor</th><th class=\"number\">wall</th><th class=\"number\">rays</th><th "
-      "class=\"number\">MB</th>"
+      "class=\"number\">peak MB</th>"
       "<th class=\"number\">RMSE</th><th class=\"number\">FLIP</th><th class=\"number\">&gt; 1/255</th><th "
       "class=\"number\">p99.9</th>"
       "<th class=\"number\">relMSE</th><th class=\"number\">max</th><th class=\"number\">distance</th><th "
       "class=\"number\">normal</th>"
       "</tr></thead><tbody>\n";
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
+  for (const std::size_t i : table_order(data)) {
     const ChartPoint& point = data.points[i];
     const bool best = std::find(front.begin(), front.end(), i) != front.end();
     const std::uint64_t rays = std::accumulate(point.rays.begin(), point.rays.end(), std::uint64_t{0});
     const double cpu = point.cpu().median, wall = point.wall().median;
-    const double megabytes = 1e-6 * static_cast<double>(point.memory_bytes());
+    const double megabytes = 1e-6 * point.memory_bytes();
     html +=
         fmt::format("<tr data-point=\"{}\"{}><td>{}</td><td class=\"value\">{}</td>", i, best ? " class=\"best\"" : "",
                     escaped_html(point.setting.knob), escaped_html(point.setting.value));
@@ -176,8 +195,8 @@ std::string settings_table(const ChartData& data) {
   }
   return html +
          "</tbody></table></div>\n<p class=\"quiet\">Blue: on the front of RMSE. Distance: mean relative error of the "
-         "hit distance; normal: mean error in degrees; both over the pixels that one surface fills. MB: arrays of "
-         "shapes, tracer and film.</p></section>\n";
+         "hit distance; normal: mean error in degrees; both over the pixels that one surface fills. Peak MB: "
+         "the most memory at any time of preparing and tracing, above the program itself.</p></section>\n";
 }
 
 std::string method_section(const ChartData& data) {

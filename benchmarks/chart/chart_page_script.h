@@ -117,6 +117,8 @@ let shown = [null, null, null], drawn_for = "";
 async function draw() {
   const a = Number(byId("picture-a").value), b = Number(byId("picture-b").value), gain = 2 ** Number(byId("gain").value);
   const wanted = [a, b, gain].join();
+  byId("name-a").textContent = pictures[a].name;
+  byId("name-b").textContent = pictures[b].name;
   if (wanted !== drawn_for) {
     const [pa, pb] = await Promise.all([image(a), image(b)]);
     shown = [pa, pb, await error_map(pa, pb, gain)];

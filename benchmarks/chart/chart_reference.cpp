@@ -4,22 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "benchmarks/chart/chart_cost.h"
 #include "geometry/stopwatch.h"
 
 namespace raytree::benchmarks {
 namespace {
 
-constexpr double kReferenceShare = 0.4;  ///< of the budget that the reference may take...
-constexpr double kAssumedRays = 2e6;     ///< ...at so many rays a second, whatever the machine does
+constexpr double kReferenceShare = 0.35;  ///< of the budget that the reference may take at kAssumedRays
 constexpr int kFewestGrid = 3, kMostGrid = 24;
 constexpr int kShallowTree = 8, kDeepTree = 40, kTreeStep = 4;
-constexpr double kFewRaysPerSample = 30, kManyRaysPerSample = 150;
-constexpr int kReferenceRoughSamples = 16;  ///< each of a pixel's many samples has facets of its own
+constexpr double kFewRaysPerSample = 30, kManyRaysPerSample = 80;
+constexpr int kReferenceRoughSamples = 4;  ///< each of a pixel's many samples has facets of its own
 /// Tried one after the other until a deep tree is affordable; what is cut is a bound on the radiance lost.
-constexpr double kCutoffs[] = {0, 1e-6, 1e-5, 1e-4};
+constexpr double kCutoffs[] = {0, 1e-5, 1e-4, 1e-3};
+/// Of what four more levels change to what the four before did, at most.
+constexpr double kMostDepthRatio = 0.9;
 constexpr double kFacetTolerance = 0.1, kDaintyTolerance = 0.05;  ///< pixels, of the halves
-constexpr int kProbeWidth = 48;
 
 Words joined_words(const Words& first, const Words& last) {
   Words words = first;
@@ -30,16 +32,6 @@ Words joined_words(const Words& first, const Words& last) {
 Words tree_flags(const SceneTraits& traits, int depth, double cutoff) {
   if (!traits.branches) return {};
   return {"--depth", std::to_string(depth), "--cutoff", fmt::format("{}", cutoff)};
-}
-
-/// A small picture under these flags, one sample a pixel.
-ChartRender small_picture(const ChartSceneMaker& make, Words flags, int width, int height, int threads,
-                          const std::atomic<bool>* stop) {
-  flags.insert(flags.end(), {"--antialias", "none"});
-  ChartScene scene = make(flags);
-  scene.description.image = {kProbeWidth, std::max(1, kProbeWidth * height / width)};
-  Warnings dropped;
-  return render_timed(std::move(scene), threads, stop, dropped);
 }
 
 double rays_per_sample(const ChartRender& render) {
@@ -91,6 +83,46 @@ Film blended(Film first, const Film& last, double weight, double last_weight) {
   return first;
 }
 
+/// How deep a tree is traced, and what that costs and leaves out.
+struct TreePlan {
+  int depth = kDeepTree;
+  double cutoff = 0, rays_per_sample = 0;
+  double residual = 0;  ///< RMSE by all further levels
+  double error() const { return std::hypot(residual, cutoff); }
+};
+
+/// The deepest tree of at most `most` rays a sample, by small pictures of one depth after the other. None: stopped.
+template <class Probe>
+std::optional<TreePlan> plan_tree(Probe&& probe, double cutoff, double most, bool branches) {
+  TreePlan plan{0, cutoff, 0, 0};
+  std::optional<Film> deepest;
+  std::vector<double> changes;  // of each step
+  // Further levels change ever less, by about as much less as those did that were tried.
+  const auto ratio = [&] {
+    if (changes.size() < 2 || !(changes.front() > 0)) return kMostDepthRatio;
+    return std::min(kMostDepthRatio,
+                    std::pow(changes.back() / changes.front(), 1.0 / static_cast<double>(changes.size() - 1)));
+  };
+  for (int depth = branches ? kShallowTree : kDeepTree; depth <= kDeepTree; depth += kTreeStep) {
+    ChartRender render = probe(depth);
+    if (!render.complete) return std::nullopt;
+    if (deepest) changes.push_back(rmse_between(*deepest, render.film));
+    if (plan.depth > 0 && rays_per_sample(render) > most) {
+      plan.residual = changes.back() / (1 - ratio());
+      return plan;
+    }
+    plan.depth = depth;
+    plan.rays_per_sample = rays_per_sample(render);
+    deepest = std::move(render.film);
+    if (render.branches_at_depth_limit == 0) {  // all that there is
+      plan.depth = kDeepTree;
+      return plan;
+    }
+  }
+  plan.residual = changes.empty() ? 0 : changes.back() * ratio() / (1 - ratio());
+  return plan;
+}
+
 }  // namespace
 
 std::optional<ReferencePlan> plan_reference(const ChartSceneMaker& make, const SceneTraits& traits, int width,
@@ -102,31 +134,25 @@ std::optional<ReferencePlan> plan_reference(const ChartSceneMaker& make, const S
     return words;
   };
   const double pixels = static_cast<double>(width) * static_cast<double>(height);
-  const double rays_allowed = budget_seconds * kReferenceShare * kAssumedRays;
+  const double rays_allowed = budget_seconds * kReferenceShare * kAssumedRays / ray_cost(make({}).description);
   constexpr int kFewestSamples = kFewestGrid * kFewestGrid + (kFewestGrid + 1) * (kFewestGrid + 1);
   const double most = std::clamp(rays_allowed / (pixels * kFewestSamples), kFewRaysPerSample, kManyRaysPerSample);
-  ReferencePlan plan;
-  double rays = 0, cutoff = 0;
-  int depth = 0;
-  for (const double candidate : kCutoffs) {
-    cutoff = candidate;
-    depth = 0;
-    plan.depth_residual = 0;
-    std::optional<Film> deepest;
-    for (int deeper = kShallowTree; deeper <= kDeepTree; deeper += kTreeStep) {
-      ChartRender probe = small_picture(make, flags_of(deeper, cutoff, kFacetTolerance), width, height, threads, stop);
-      if (!probe.complete) return std::nullopt;
-      if (depth > 0 && rays_per_sample(probe) > most) {
-        plan.depth_residual = rmse_between(*deepest, probe.film);
-        break;
-      }
-      depth = traits.branches ? deeper : kDeepTree;
-      rays = rays_per_sample(probe);
-      deepest = std::move(probe.film);
-      if (!traits.branches) break;
-    }
-    if (depth == kDeepTree) break;
+  std::optional<TreePlan> tree;
+  for (const double cutoff : kCutoffs) {
+    const auto probe = [&](int depth) {
+      const Words flags = joined_words(flags_of(depth, cutoff, kFacetTolerance), {"--antialias", "grid:2"});
+      return small_picture(make(flags), width, height, threads, stop);
+    };
+    const std::optional<TreePlan> next = plan_tree(probe, cutoff, most, traits.branches);
+    if (!next) return std::nullopt;
+    if (!tree || next->error() < tree->error()) tree = next;
+    if (tree->depth == kDeepTree) break;
   }
+  ReferencePlan plan;
+  plan.depth_residual = tree->residual;
+  plan.cutoff = tree->cutoff;
+  const int depth = tree->depth;
+  const double cutoff = tree->cutoff, rays = tree->rays_per_sample;
   plan.grid = std::clamp(static_cast<int>(std::sqrt(rays_allowed / (rays * pixels) / 2)), kFewestGrid, kMostGrid);
   // The scene's own grid is to be compared with others.
   const Antialiasing& own = traits.render.antialias;
@@ -141,8 +167,7 @@ std::optional<ReferencePlan> plan_reference(const ChartSceneMaker& make, const S
   if (traits.branches) {
     plan.words += fmt::format(", trees of up to {} levels", depth);
     if (plan.depth_residual > 0)
-      plan.words += fmt::format(" (deeper ones, which change it by an RMSE of about {:.2g}, were beyond the budget)",
-                                plan.depth_residual);
+      plan.words += fmt::format(" (deeper ones would change it by an RMSE of about {:.1g})", plan.depth_residual);
     plan.words +=
         cutoff > 0 ? fmt::format(", no more than {:g} of radiance cut from a sample", cutoff) : ", nothing cut";
   }
@@ -168,7 +193,7 @@ std::optional<ChartReference> make_reference(const ReferencePlan& plan, const Ch
   const ChartPicture coarse = chart_picture(first.film, display);
   reference.film = blended(std::move(first.film), last.film, plan.grid * plan.grid, (plan.grid + 1) * (plan.grid + 1));
   reference.floor = picture_errors(chart_picture(reference.film, display), coarse);
-  reference.floor.rmse = std::hypot(reference.floor.rmse, plan.depth_residual);
+  reference.floor.rmse = std::hypot(reference.floor.rmse, plan.depth_residual, plan.cutoff);
   reference.seconds = seconds_since(start);
   return reference;
 }

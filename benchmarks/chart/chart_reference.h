@@ -15,8 +15,9 @@ namespace raytree::benchmarks {
 struct ReferencePlan {
   int grid = 3;       ///< one half has grid^2 samples a pixel, the other (grid + 1)^2
   Words first, last;  ///< flags of the halves: the second's facets are half as large
-  /// What a deeper tree would change: RMSE in a small picture; 0 where the tree is as deep as it should be.
+  /// What a tree of any depth would change: RMSE in a small picture, by what the last levels of the tree changed.
   double depth_residual = 0;
+  double cutoff = 0;  ///< radiance cut from a sample at most
   std::string words;  ///< what it is, in a sentence
   bool operator==(const ReferencePlan&) const = default;
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "benchmarks/chart/error_metrics.h"
+#include "benchmarks/resident_memory.h"
 #include "geometry/stopwatch.h"
 
 namespace raytree::benchmarks {
@@ -45,6 +46,7 @@ ChartRender render_timed(ChartScene scene, int threads, const std::atomic<bool>*
   options.channels = kChartChannels;
   options.threads = threads;
   options.stop = stop;
+  const PeakMemory memory;
   const double cpu_start = process_seconds();
   const Clock::time_point start = Clock::now();
   try {
@@ -52,6 +54,7 @@ ChartRender render_timed(ChartScene scene, int threads, const std::atomic<bool>*
     RenderResult rendered = render(prepared, options);
     result.wall_seconds = seconds_since(start);
     result.cpu_seconds = process_seconds() - cpu_start;
+    result.peak_bytes = memory.bytes();
     result.complete = rendered.complete;
     result.build_seconds = prepared.seconds.build;
     result.rays = rendered.statistics.rays;

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <thread>
 
 #include "benchmarks/chart/chart_settings.h"
@@ -32,11 +33,12 @@ struct ChartRender {
   double build_seconds = 0;                  ///< of these: the intersector's build, wall
   std::array<std::uint64_t, kRayKindCount> rays{};
   std::uint64_t samples = 0, branches_at_depth_limit = 0;
-  std::uint64_t film_bytes = 0, array_bytes = 0, tracer_bytes = 0;
+  /// Most resident memory while preparing and tracing, above the process without the render. None: not known here.
+  std::optional<std::uint64_t> peak_bytes;
+  std::uint64_t film_bytes = 0, array_bytes = 0, tracer_bytes = 0;  ///< by their sizes, what is left when all is ready
   Film film{0, 0, {}, {}};
 
   std::uint64_t total_rays() const;
-  std::uint64_t memory_bytes() const { return film_bytes + array_bytes + tracer_bytes; }
 };
 
 /// Prepares and renders once. Warnings of the scene go to `warnings`. A run that `stop` ended is not complete.

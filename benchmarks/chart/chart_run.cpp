@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <iterator>
 #include <limits>
 #include <set>
 
+#include "benchmarks/chart/chart_cost.h"
 #include "benchmarks/report_page.h"
 #include "geometry/stopwatch.h"
 #include "renderer/film_image.h"
@@ -19,10 +21,11 @@ namespace {
 
 constexpr double kEnough = 0.02;  ///< (quartile distance) / median / sqrt(samples) of a time that is known
 constexpr std::size_t kFewestSamples = 3, kMostSamples = 15;
-constexpr double kAloneShare = 0.5;    ///< of the budget: until then knobs are turned one at a time...
-constexpr double kCrossedShare = 0.6;  ///< ...until then several; then times are taken again
-constexpr double kPointShare = 0.1;    ///< of the budget that one render may take
-constexpr int kEstimateEdge = 6;       ///< the naive tracer's time is guessed from a picture of 1/6 of the edges
+constexpr double kAloneShare = 0.65;    ///< of the budget: until then knobs are turned one at a time...
+constexpr double kCrossedShare = 0.75;  ///< ...until then several; then times are taken again
+constexpr double kProbeShare = 0.08;    ///< of the budget that small pictures may take
+constexpr double kPointShare = 0.1;     ///< of the budget that one render may take
+constexpr int kEstimateEdge = 6;        ///< the naive tracer's time is guessed from a picture of 1/6 of the edges
 constexpr double kSecondsBetweenSaves = 15;
 
 /// Of the bits of the picture's light.
@@ -57,6 +60,7 @@ class ChartMeasurement {
     if (!stale_.empty()) repeat();
     // However little time is left, a chart holds the scene as it is.
     if (result_.data.points.empty() && !alone.empty()) measure(alone.front()), alone.pop_front();
+    sort_by_cost(alone);
     bool more = true;
     while (more && !stopped() && spent() < 1) {
       // The second time around, budget is left though all times are known.
@@ -176,6 +180,38 @@ class ChartMeasurement {
     }
   }
 
+  /// Small pictures of settings that wait say which are cheap; those that come to a setting that was measured go.
+  void sort_by_cost(std::deque<ChartSetting>& queue) {
+    std::vector<ChartSetting> settings;
+    std::set<std::string> seen = keys_;
+    phase("looking which settings are cheap");
+    const double share = probe_own_settings() * static_cast<double>(queue.size()) / options_.budget_seconds;
+    small_pictures_pay_ = share <= kProbeShare;
+    for (ChartSetting& setting : queue) {
+      if (stopped()) break;
+      const ChartScene scene = options_.make(setting.flags);
+      if (!seen.insert(text_hash(render_key(scene))).second) continue;
+      // The naive tracer's rays are as many, and take far longer.
+      if (small_pictures_pay_ && scene.prepare.tracer != Tracer::spheres)
+        setting.expected_rays = expected_rays_of(scene);
+      settings.push_back(std::move(setting));
+    }
+    sort_cheap_first(settings);
+    queue.assign(std::make_move_iterator(settings.begin()), std::make_move_iterator(settings.end()));
+  }
+
+  /// Seconds that a small picture of the scene's own settings takes: where preparing is most of a render, as long.
+  double probe_own_settings() {
+    const Clock::time_point begin = Clock::now();
+    own_rays_ = expected_rays_of(options_.make({}));
+    return seconds_since(begin);
+  }
+
+  /// 0: stopped.
+  double expected_rays_of(const ChartScene& scene) const {
+    return expected_rays(scene, result_.data.width, result_.data.height, options_.threads, options_.stop).value_or(0);
+  }
+
   bool more_time_needed() const {
     return !std::all_of(result_.data.points.begin(), result_.data.points.end(), time_is_known);
   }
@@ -205,8 +241,8 @@ class ChartMeasurement {
     const double most = setting.part == SweepPart::defaults
                             ? std::numeric_limits<double>::infinity()
                             : std::max(0.5, std::min(kPointShare * options_.budget_seconds, seconds_left()));
-    if (scene.prepare.tracer == Tracer::spheres) {
-      const double estimate = estimated_seconds(scene);
+    if (setting.part != SweepPart::defaults) {
+      const double estimate = estimated_seconds(scene, setting);
       if (estimate > most) {
         leave_out(setting, fmt::format("would take about {}, more than this budget's {} a render",
                                        short_seconds(estimate), short_seconds(most)));
@@ -230,6 +266,7 @@ class ChartMeasurement {
     point.wall_seconds = {render.wall_seconds};
     point.build_seconds = render.build_seconds;
     point.rays = render.rays;
+    if (render.peak_bytes) point.peak_bytes = {static_cast<double>(*render.peak_bytes)};
     point.film_bytes = render.film_bytes;
     point.array_bytes = render.array_bytes;
     point.tracer_bytes = render.tracer_bytes;
@@ -244,8 +281,18 @@ class ChartMeasurement {
     point.picture = png_of(film);
   }
 
-  /// Wall seconds of a render with the naive tracer, from a small picture. Its time goes with the pixels.
-  double estimated_seconds(const ChartScene& scene) const {
+  /// Wall seconds of a render, from small pictures; 0 where nothing is known yet.
+  double estimated_seconds(const ChartScene& scene, const ChartSetting& setting) {
+    if (scene.prepare.tracer == Tracer::spheres) return estimated_naive_seconds(scene);
+    const auto own = std::find_if(result_.data.points.begin(), result_.data.points.end(),
+                                  [](const ChartPoint& p) { return p.setting.part == SweepPart::defaults; });
+    if (own == result_.data.points.end() || !small_pictures_pay_ || own_rays_ == 0) return 0;
+    const double rays = setting.expected_rays > 0 ? setting.expected_rays : expected_rays_of(scene);
+    return own->wall().median * rays / own_rays_;
+  }
+
+  /// With the naive tracer, whose time goes with the pixels.
+  double estimated_naive_seconds(const ChartScene& scene) const {
     ChartScene small = scene;
     ImageDescription& image = small.description.image;
     const double pixels = static_cast<double>(image.width) * image.height;
@@ -258,14 +305,31 @@ class ChartMeasurement {
     return render.complete ? render.wall_seconds * factor : most * factor;
   }
 
-  /// One more time of every point whose time is not known yet, by turns. False: none was needed.
+  /// Whose times are to be taken again: while any of them is not known, the scene's own settings and what lies on the
+  /// fronts alone, since all that is said follows from these.
+  std::vector<std::size_t> wanting_time() const {
+    const std::vector<ChartPoint>& points = result_.data.points;
+    std::set<std::size_t> foremost;
+    for (const MetricInfo& metric : kMetrics)
+      if (metric.charted)
+        for (const std::size_t i : chart_front(result_.data, metric)) foremost.insert(i);
+    std::vector<std::size_t> first, rest;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (time_is_known(points[i]) && stale_.count(i) == 0) continue;
+      if (points[i].wall().median > seconds_left()) continue;
+      const bool leads =
+          points[i].setting.part == SweepPart::defaults || foremost.count(i) != 0 || stale_.count(i) != 0;
+      (leads ? first : rest).push_back(i);
+    }
+    return first.empty() ? rest : first;
+  }
+
+  /// One more time of every point that wants it and fits, by turns. False: none does.
   bool repeat() {
     bool any = false;
-    for (std::size_t i = 0; i < result_.data.points.size(); ++i) {
+    for (const std::size_t i : wanting_time()) {
       ChartPoint& point = result_.data.points[i];
-      if (time_is_known(point) && stale_.count(i) == 0) continue;
-      const double expected = point.wall().median;
-      if (stopped() || expected > seconds_left()) continue;
+      if (stopped() || point.wall().median > seconds_left()) continue;
       any = true;
       phase("again: " + (point.setting.flags.empty() ? "the scene's own settings" : command_text(point.setting.flags)));
       Warnings same;
@@ -274,6 +338,7 @@ class ChartMeasurement {
       if (!render.complete) return any;
       point.cpu_seconds.push_back(render.cpu_seconds);
       point.wall_seconds.push_back(render.wall_seconds);
+      if (render.peak_bytes) point.peak_bytes.push_back(static_cast<double>(*render.peak_bytes));
       point.build_seconds = std::min(point.build_seconds, render.build_seconds);
       if (point.picture_hash != hash_of(render.film)) point.repeats = false;
       if (stale_.erase(i) != 0) judge(point, render.film);
@@ -296,6 +361,8 @@ class ChartMeasurement {
   MeasuredChart result_;
   ChartPicture reference_;
   std::set<std::string> keys_;
+  double own_rays_ = 0;  ///< of the scene's own settings, by a small picture; 0: stopped
+  bool small_pictures_pay_ = false;
   std::set<std::size_t> stale_;  ///< points whose errors are against another reference
 };
 

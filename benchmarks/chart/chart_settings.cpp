@@ -204,12 +204,30 @@ std::vector<ChartSetting> sweep_of(const SceneTraits& traits, const std::vector<
     for (std::size_t i = 0; i < knob.values.size(); ++i) {
       const auto& [value, words] = knob.values[i];
       const bool end = i == 0 || i + 1 == knob.values.size();
-      (end ? settings : between).push_back({knob.name, value, words, end ? SweepPart::ends : SweepPart::between});
+      const double dearness = static_cast<double>(i) / static_cast<double>(knob.values.size() - 1);
+      (end ? settings : between)
+          .push_back({knob.name, value, words, end ? SweepPart::ends : SweepPart::between, 0, dearness});
     }
   settings.insert(settings.end(), between.begin(), between.end());
   const std::vector<ChartSetting> crossed = crossed_set(traits, reference_grid);
   settings.insert(settings.end(), crossed.begin(), crossed.end());
   return settings;
+}
+
+void sort_cheap_first(std::vector<ChartSetting>& settings) {
+  constexpr double kBetween = 2;
+  const auto rank = [](const ChartSetting& setting) {
+    const bool first = setting.part == SweepPart::defaults || setting.part == SweepPart::added;
+    return first ? static_cast<int>(setting.part == SweepPart::added) : setting.expected_rays > 0 ? 2 : 3;
+  };
+  const auto cost = [&](const ChartSetting& setting) {
+    if (rank(setting) < 2) return 0.0;
+    if (rank(setting) == 3) return setting.dearness;
+    return (setting.part == SweepPart::between ? kBetween : 1) * setting.expected_rays;
+  };
+  std::stable_sort(settings.begin(), settings.end(), [&](const ChartSetting& a, const ChartSetting& b) {
+    return rank(a) != rank(b) ? rank(a) < rank(b) : cost(a) < cost(b);
+  });
 }
 
 Words reference_surface_flags(const SceneTraits& traits, double tolerance) {

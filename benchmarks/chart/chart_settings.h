@@ -39,6 +39,8 @@ struct ChartSetting {
   std::string value;  ///< as the table shows it: "grid:4"
   Words flags;        ///< behind those of the whole chart
   SweepPart part = SweepPart::between;
+  double expected_rays = 0;  ///< of its picture, by a small one; 0: not known
+  double dearness = 0;       ///< place among the values of its knob: 0 the cheapest, 1 the dearest
 };
 
 /// What a scene has that knobs could turn.
@@ -61,6 +63,11 @@ SceneTraits scene_traits(const Scene& scene);
 /// to dear. Grids of `reference_grid` and one more samples an edge are left out: a picture with the reference's own
 /// samples would be nearer to it than to the truth.
 std::vector<ChartSetting> sweep_of(const SceneTraits& traits, const std::vector<Words>& added, int reference_grid);
+
+/// The order in which a budget sees most of the knobs: the defaults, what the user adds, then by expected rays, where
+/// values between the ends of a knob count as twice as dear as they are. Then come those whose rays are not known, by
+/// their places among the values of their knobs.
+void sort_cheap_first(std::vector<ChartSetting>& settings);
 
 /// Flags of the reference: limit normals, finest facets; depth, cutoff and samples are chart_reference.h's to say.
 Words reference_surface_flags(const SceneTraits& traits, double tolerance);

@@ -76,6 +76,32 @@ TEST(ChartFindings, NameTheCheapestSettingsAndThePrice) {
   EXPECT_TRUE(contains(all_findings(coarse), "under 1/255 (RMSE in linear light): none of the settings measured"));
 }
 
+TEST(ChartFindings, SayWhatTheReferenceCannotTell) {
+  ChartData data = test::sample_chart();
+  EXPECT_FALSE(contains(all_findings(data), "The reference's own error"));
+  data.floor.rmse = 0.01;
+  const std::string below = all_findings(data);
+  EXPECT_TRUE(contains(below, "Most accurate setting: --levels 7;")) << below;
+  EXPECT_TRUE(contains(below, "The reference's own error, 0.01, is larger")) << below;
+  std::erase_if(data.points, [](const ChartPoint& point) { return point.errors.rmse < 0.01; });
+  data.floor.over_step = 0.2;
+  const std::string above = all_findings(data);
+  EXPECT_TRUE(contains(above, "linear light): not known; the reference's own error is 0.01.")) << above;
+  EXPECT_TRUE(contains(above, "after the view: not known; the reference's own error is 20 % of the pixels.")) << above;
+}
+
+TEST(ChartFindings, NameTheLeastAndTheMostMemory) {
+  ChartData data = test::sample_chart();
+  EXPECT_FALSE(contains(all_findings(data), "Peak memory"));
+  data.points.push_back(charted_point("hungry", "1", 3, 0.05));
+  data.points.back().peak_bytes = {31e6, 30e6, 30e6};
+  EXPECT_TRUE(contains(all_findings(data), "between 2.5 MB (the scene's own settings) and 30 MB (--hungry 1); the"))
+      << all_findings(data);
+  // Sizes are counted where nothing is measured; they say less.
+  for (ChartPoint& point : data.points) point.peak_bytes.clear();
+  EXPECT_FALSE(contains(all_findings(data), "Peak memory"));
+}
+
 TEST(ChartFindings, NameKnobsThatBuyNothingAndSpeedForNothing) {
   ChartData data = test::sample_chart();
   data.points.push_back(charted_point("idle", "1", 0.5, 0.05));

@@ -39,5 +39,23 @@ TEST(ChartSettings, BeginWithTheScenesOwnThenWhatIsAddedAndTheEndsOfKnobs) {
             1);
 }
 
+TEST(ChartSettings, CheapOnesComeFirst) {
+  const auto setting = [](const std::string& value, SweepPart part, double rays) {
+    ChartSetting made{"knob", value, {}, part};
+    made.expected_rays = rays;
+    return made;
+  };
+  std::vector<ChartSetting> settings{setting("naive", SweepPart::ends, 0),      setting("dear", SweepPart::ends, 100),
+                                     setting("middle", SweepPart::between, 30), setting("other", SweepPart::ends, 50),
+                                     setting("cheap", SweepPart::ends, 10),     setting("added", SweepPart::added, 999),
+                                     setting("own", SweepPart::defaults, 20),   setting("like", SweepPart::ends, 10)};
+  settings.insert(settings.begin(), setting("late", SweepPart::between, 0));
+  settings.front().dearness = 0.5;
+  sort_cheap_first(settings);
+  std::string order;
+  for (const ChartSetting& s : settings) order += s.value + " ";
+  EXPECT_EQ(order, "own added cheap like other middle dear naive late ") << "30 between two ends count as 60";
+}
+
 }  // namespace
 }  // namespace raytree::benchmarks
