@@ -104,15 +104,50 @@ Totals totals(const SceneSummary& summary) {
 
 constexpr double kDegrees = 180 / kPi;
 
+/// Facets that are held to the same, and to what.
+struct NormalRow {
+  const char* key;
+  std::string name;
+  const NormalError& error;
+  std::optional<double> bound;  ///< pixels of shading
+  const char* reason;           ///< why they may be off by more than the tolerance
+};
+
+std::vector<NormalRow> normal_rows(const TessellationSummary& made) {
+  const TessellationError& error = *made.measured;
+  const auto times = [&](double share) {
+    return made.tolerance ? std::optional<double>(*made.tolerance * share) : std::nullopt;
+  };
+  return {
+      {"regular", "regular", error.regular, times(1), ""},
+      {"irregular", "irregular", error.irregular, times(kIrregularShading),
+       "at extraordinary vertices, semi-sharp creases and tips, and between patches that are no polynomials, normals "
+       "converge slowly"},
+      {"small", fmt::format("below {} pixels", kShortestShadedEdge), error.small, std::nullopt,
+       "their normals are blends of the surface's own less than that far away"}};
+}
+
+double share_over(const NormalError& error) { return error.facets > 0 ? double(error.over) / double(error.facets) : 0; }
+
 Json json_of(const TessellationSummary& made) {
   Json json = {
       {"faces", made.faces}, {"triangles", made.triangles}, {"bytes", made.bytes}, {"coarse_faces", made.coarse_faces}};
-  if (made.measured)
-    json["measured"] = {{"samples", made.measured->samples},
-                        {"largest_pixels", made.measured->largest.pixels},
-                        {"largest_shading_pixels", made.measured->largest.shading},
-                        {"largest_distance", made.measured->largest.distance},
-                        {"largest_normal_angle_degrees", made.measured->largest.angle * kDegrees}};
+  if (!made.measured) return json;
+  Json& measured = json["measured"];
+  measured = {{"samples", made.measured->samples},
+              {"largest_pixels", made.measured->largest.pixels},
+              {"largest_shading_pixels", made.measured->largest.shading},
+              {"largest_distance", made.measured->largest.distance},
+              {"largest_normal_angle_degrees", made.measured->largest.angle * kDegrees}};
+  for (const NormalRow& row : normal_rows(made)) {
+    Json& normals = measured["normals"][row.key];
+    normals = {{"triangles", row.error.facets},
+               {"largest_angle_degrees", row.error.angle * kDegrees},
+               {"largest_shading_pixels", row.error.shading},
+               {"bound_shading_pixels", row.bound ? Json(*row.bound) : Json(nullptr)},
+               {"share_over_tolerance", share_over(row.error)}};
+    if (*row.reason != 0) normals["reason"] = row.reason;
+  }
   return json;
 }
 
@@ -199,28 +234,40 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-/// A row for each curved shape, the scene's and those of groups.
+/// Rows for each curved shape, the scene's and those of groups: of distance, then of normals by what they are held to.
 std::string tessellation_text(const SceneSummary& summary) {
-  std::vector<std::vector<std::string>> rows = {{"name", "faces", "triangles", "memory", "coarse", "samples",
-                                                 "pixels off", "shading off", "units off", "normal off"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"name", "faces", "triangles", "memory", "coarse", "samples", "pixels off", "units off"}};
+  std::vector<std::vector<std::string>> normals = {
+      {"name", "class", "triangles", "normal off", "shading off", "held to", "over the tolerance"}};
+  std::vector<std::string> notes;
   const auto add = [&](const std::string& group, const std::vector<ShapeSummary>& shapes) {
     for (const ShapeSummary& shape : shapes) {
-      if (!shape.tessellation) continue;
+      if (!shape.tessellation || !shape.tessellation->measured) continue;
       const TessellationSummary& made = *shape.tessellation;
-      std::vector<std::string>& row =
-          rows.emplace_back(std::vector<std::string>{group + shape.name, grouped(made.faces), grouped(made.triangles),
-                                                     readable_bytes(made.bytes), grouped(made.coarse_faces)});
-      const TessellationError error = made.measured.value_or(TessellationError());
-      row.push_back(grouped(error.samples));
-      row.push_back(fmt::format("{:.4f}", error.largest.pixels));
-      row.push_back(fmt::format("{:.4f}", error.largest.shading));
-      row.push_back(fmt::format("{:.3g}", error.largest.distance));
-      row.push_back(fmt::format("{:.4f} degrees", error.largest.angle * kDegrees));
+      const FacetDeviation& largest = made.measured->largest;
+      rows.push_back({group + shape.name, grouped(made.faces), grouped(made.triangles), readable_bytes(made.bytes),
+                      grouped(made.coarse_faces), grouped(made.measured->samples),
+                      fmt::format("{:.4f}", largest.pixels), fmt::format("{:.3g}", largest.distance)});
+      for (const NormalRow& row : normal_rows(made)) {
+        if (row.error.facets == 0) continue;
+        normals.push_back({group + shape.name, row.name, grouped(row.error.facets),
+                           fmt::format("{:.4f} degrees", row.error.angle * kDegrees),
+                           fmt::format("{:.4f}", row.error.shading),
+                           row.bound ? fmt::format("{:.4f}", *row.bound) : std::string("-"),
+                           fmt::format("{:.2f} %", 100 * share_over(row.error))});
+        const std::string note = row.name + ": " + row.reason;
+        if (*row.reason != 0 && std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+      }
     }
   };
   add("", summary.shapes);
   for (const GroupSummary& group : summary.groups) add(group.name + "/", group.shapes);
-  return rows.size() > 1 ? "tessellation\n" + table(rows) : "tessellation  no curved shapes\n";
+  if (rows.size() == 1) return "tessellation  no curved shapes\n";
+  std::string text = "tessellation\n" + table(rows) +
+                     "normals    angles, and pixels of the picture that shading is off by for them\n" + table(normals);
+  for (const std::string& note : notes) text += "  " + note + "\n";
+  return text;
 }
 
 std::string info_text(const Scene& scene, const InfoOptions& options) {

@@ -35,6 +35,22 @@ inline std::array<float, 4> weighted_sum(const BicubicControl& control, const st
   return result;
 }
 
+/// Four points of a uniform cubic B-spline, each `step` from the next, become those of the Bezier curve.
+template <class Point>
+void spline_to_bezier(Point* p, std::size_t step) {
+  Point &a = p[0], &b = p[step], &c = p[2 * step], &d = p[3 * step];
+  const Point begin = (a + b * 4.0 + c) / 6.0, end = (b + c * 4.0 + d) / 6.0;
+  const Point second = (b * 2.0 + c) / 3.0, third = (b + c * 2.0) / 3.0;
+  a = begin, b = second, c = third, d = end;
+}
+
+/// The same for the 4 x 4 points of a patch.
+template <class Point>
+void spline_to_bezier(std::array<Point, 16>& points) {
+  for (std::size_t i = 0; i < 4; ++i) spline_to_bezier(&points[4 * i], 1);
+  for (std::size_t i = 0; i < 4; ++i) spline_to_bezier(&points[i], 4);
+}
+
 /// Bits of a set of sides along which a surface ends or is infinitely sharp, so that the points beyond count for
 /// nothing.
 inline constexpr std::uint8_t kBottomSide = 1, kRightSide = 2, kTopSide = 4, kLeftSide = 8;

@@ -17,10 +17,8 @@ namespace raytree {
 struct FacetDeviation {
   double pixels = 0;    ///< distance to the limit surface, as TessellationView weighs it
   double distance = 0;  ///< the same in the surface's units, in any direction
-  /// Between the normals, radians; 0 for facets without an edge of kShortestShadedEdge.
-  double angle = 0;
-  /// The same in pixels: see kTurnPerPixel.
-  double shading = 0;
+  double angle = 0;     ///< between the normals, radians
+  double shading = 0;   ///< the same in pixels: see kTurnPerPixel
 
   void include(const FacetDeviation& other) {
     pixels = std::max(pixels, other.pixels);
@@ -31,14 +29,20 @@ struct FacetDeviation {
 };
 
 /// Radians. A normal that is off by an angle shades as if its point were off by some pixels: by the angle over what the
-/// normal turns in a pixel, along the facet's edge where it turns most; so what moves a highlight by as much as facets
-/// may lie off anyway is no fault. And where it hardly turns by this instead: turning a normal by a changes Lambert's
-/// cosine by at most a, so that the default tolerance of 1/4 pixel lets shades differ by one level of 255.
+/// normal turns in a pixel, in the facet's direction where it turns most; so what moves a highlight by as much as
+/// facets may lie off anyway is no fault. And where it hardly turns by this instead: turning a normal by a changes
+/// Lambert's cosine by at most a, so that the default tolerance of 1/4 pixel lets shades differ by one level of 255.
 inline constexpr double kTurnPerPixel = 4.0 / 255;
 
-/// Normals of facets all of whose edges look shorter than this, in pixels, are not judged: less than a pixel's mean
-/// hangs on them, and where a surface has a tip no facet is small enough.
-inline constexpr double kShortestShadedEdge = 1;
+/// Normals of facets all of whose edges look shorter than this, in pixels, are not judged: their normals are blends of
+/// the surface's own less than that far away, and where a surface has a tip no facet is small enough.
+inline constexpr double kShortestShadedEdge = 6;
+
+/// What normals are held to, in units of the tolerance, by the kind of face (ParametricSurface::polynomial_patch()).
+/// Over a polynomial what facets miss goes with the square of their size, and the tolerance itself costs little. At
+/// extraordinary vertices and tips it goes with a power below 2, beside semi-sharp creases it is what the normal turns
+/// over the crease until facets are as narrow as that: there normals are held to more, and the tolerance is aimed at.
+inline constexpr double kIrregularShading = 8;
 
 /// The point of the triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
 inline Vec3d nearest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -73,13 +77,24 @@ class SampledFacet {
   SampledFacet(const TessellationView& view, const Vec3d& origin, const std::array<FacetCorner, 3>& corners,
                const std::array<bool, 3>& hard)
       : view_(view), origin_(origin), corners_(corners), hard_(hard) {
+    const auto turn_over = [&](const Vec3d& turn, double pixels) {
+      if (pixels > 0) turn_ = std::max(turn_, turn.length() / pixels);
+    };
+    std::size_t longest = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const FacetCorner &a = corners[i], &b = corners[(i + 1) % 3];
       const double pixels = view.pixels(origin + a.position, b.position - a.position);
-      longest_ = std::max(longest_, pixels);
-      if (pixels > 0) turn_ = std::max(turn_, (b.normal - a.normal).length() / pixels);
+      if (pixels > longest_) longest_ = pixels, longest = i;
+      turn_over(b.normal - a.normal, pixels);
     }
-    shaded_ = longest_ >= kShortestShadedEdge;
+    // A narrow facet's edges all run along it.
+    const FacetCorner &a = corners[longest], &b = corners[(longest + 1) % 3], &c = corners[(longest + 2) % 3];
+    const Vec3d along = b.position - a.position;
+    if (const double square = along.dot(along); square > 0) {
+      const double foot = (c.position - a.position).dot(along) / square;
+      turn_over(c.normal - a.normal - (b.normal - a.normal) * foot,
+                view.pixels(origin + c.position, c.position - a.position - along * foot));
+    }
     normal_ = (corners[1].position - corners[0].position).cross(corners[2].position - corners[0].position);
     const double length = normal_.length();
     if (length > 0) normal_ /= length;
@@ -89,6 +104,7 @@ class SampledFacet {
 
   /// Of its edges, pixels.
   double longest() const { return longest_; }
+  bool judges_normals() const { return longest_ >= kShortestShadedEdge; }
 
   /// At the surface's point of barycentric coordinates `weights` in the face's parameters.
   FacetDeviation at(const SurfaceSample& truth, const std::array<double, 3>& weights) const {
@@ -97,18 +113,15 @@ class SampledFacet {
     FacetDeviation deviation;
     deviation.pixels = view_.pixels(origin_ + p, away);
     deviation.distance = away.length();
-    if (shaded_) {
-      const Vec3d normal =
-          corners_[0].normal * weights[0] + corners_[1].normal * weights[1] + corners_[2].normal * weights[2];
-      const Vec3d expected(truth.normal);
-      const double across = normal.cross(expected).length(), along = normal.dot(expected);
-      const double tangent = across / along;
-      // atan x = x - x^3 / 3 + O(x^5): to 2e-7 of itself below this.
-      constexpr double kSmall = 0.03;
-      deviation.angle =
-          along > 0 && tangent < kSmall ? tangent * (1 - tangent * tangent / 3) : std::atan2(across, along);
-      deviation.shading = deviation.angle / std::max(kTurnPerPixel, turn_);
-    }
+    const Vec3d normal =
+        corners_[0].normal * weights[0] + corners_[1].normal * weights[1] + corners_[2].normal * weights[2];
+    const Vec3d expected(truth.normal);
+    const double across = normal.cross(expected).length(), along = normal.dot(expected);
+    const double tangent = across / along;
+    // atan x = x - x^3 / 3 + O(x^5): to 2e-7 of itself below this.
+    constexpr double kSmall = 0.03;
+    deviation.angle = along > 0 && tangent < kSmall ? tangent * (1 - tangent * tangent / 3) : std::atan2(across, along);
+    deviation.shading = deviation.angle / std::max(kTurnPerPixel, turn_);
     return deviation;
   }
 
@@ -136,7 +149,6 @@ class SampledFacet {
   double bend_ = 0;  ///< sine of the angle that the next facet may be turned by
   double longest_ = 0;
   double turn_ = 0;  ///< of the normal, largest, radians a pixel
-  bool shaded_ = true;
 };
 
 /// Which pieces of a face's boundary are hard: [boundary points], the piece from each point to the next.

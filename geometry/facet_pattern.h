@@ -33,6 +33,16 @@ constexpr std::size_t inner_rate_count(FaceDomain domain) { return domain == Fac
 /// and (r + 1)(r + 2) / 2 points. Throws Error (bad_input) for a face of more than 2^30 facets.
 FacetPattern make_facet_pattern(FaceDomain domain, std::span<const std::uint16_t> rates);
 
+/// What a pattern is a function of: the domain, then the rates; empty for none.
+using PatternKey = std::vector<std::uint16_t>;
+struct PatternKeyHash {
+  std::size_t operator()(const PatternKey& key) const {
+    std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, a word at a time
+    for (const std::uint16_t value : key) hash = (hash ^ value) * 0x100000001b3u;
+    return static_cast<std::size_t>(hash ^ (hash >> 32));
+  }
+};
+
 struct FacetCounts {
   std::uint32_t boundary = 0, interior = 0;  ///< points
   std::uint32_t facets = 0;

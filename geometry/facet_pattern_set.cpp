@@ -11,21 +11,12 @@
 namespace raytree {
 namespace {
 
-using Key = std::vector<std::uint16_t>;  ///< the domain, then the rates; empty for a hole
-
-struct KeyHash {
-  std::size_t operator()(const Key& key) const {
-    std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, a word at a time
-    for (const std::uint16_t value : key) hash = (hash ^ value) * 0x100000001b3u;
-    return static_cast<std::size_t>(hash ^ (hash >> 32));
-  }
-};
-using Numbers = std::unordered_map<Key, std::uint32_t, KeyHash>;
+using Numbers = std::unordered_map<PatternKey, std::uint32_t, PatternKeyHash>;
 
 constexpr std::size_t kBlockFaces = 8192;  // faces
 
-FaceDomain domain_of(const Key& key) { return static_cast<FaceDomain>(key[0]); }
-std::span<const std::uint16_t> rates_of(const Key& key) { return std::span(key).subspan(1); }
+FaceDomain domain_of(const PatternKey& key) { return static_cast<FaceDomain>(key[0]); }
+std::span<const std::uint16_t> rates_of(const PatternKey& key) { return std::span(key).subspan(1); }
 
 }  // namespace
 
@@ -34,10 +25,10 @@ FacetPatternSet::FacetPatternSet(const ParametricSurface& surface, const Tessell
     : numbers_(surface.face_count()) {
   const std::size_t blocks = (numbers_.size() + kBlockFaces - 1) / kBlockFaces;
   const auto block_end = [&](std::size_t block) { return std::min(numbers_.size(), (block + 1) * kBlockFaces); };
-  std::vector<std::vector<Key>> found(blocks);  // in the order of faces
+  std::vector<std::vector<PatternKey>> found(blocks);  // in the order of faces
   tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t block) {
     Numbers known;
-    Key key, last;
+    PatternKey key, last;
     std::vector<std::uint16_t> face_rates;
     std::uint32_t number = 0;
     for (std::size_t face = block * kBlockFaces; face < block_end(block); ++face) {
@@ -57,11 +48,11 @@ FacetPatternSet::FacetPatternSet(const ParametricSurface& surface, const Tessell
     }
   });
 
-  Numbers numbers{{Key(), 0}};
-  std::vector<const Key*> keys{&numbers.begin()->first};
+  Numbers numbers{{PatternKey(), 0}};
+  std::vector<const PatternKey*> keys{&numbers.begin()->first};
   std::vector<std::vector<std::uint32_t>> whole(blocks);  // [block][number within it]
   for (std::size_t block = 0; block < blocks; ++block)
-    for (const Key& key : found[block]) {
+    for (const PatternKey& key : found[block]) {
       const auto [place, added] = numbers.try_emplace(key, static_cast<std::uint32_t>(numbers.size()));
       if (added) keys.push_back(&place->first);
       whole[block].push_back(place->second);

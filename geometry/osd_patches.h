@@ -73,6 +73,19 @@ class FacePatches {
 
   bool has_surface(std::size_t face) const { return face_slots_[face] != kNone; }
 
+  /// Of a regular face: for BicubicControl. False for all others.
+  bool regular_control(std::size_t face, BicubicControl& control) const {
+    const std::uint16_t slot = face_slots_[face];
+    if (slot >= kGeneral) return false;
+    const RegularPatch& regular = chunks_[face / kChunk].regular[slot];
+    for (std::size_t i = 0; i < 16; ++i) {
+      const float* const value = &values_[static_cast<std::size_t>(regular.indices[i]) * kWidth];
+      for (std::size_t k = 0; k < 4; ++k) control[4 * i + k] = k < kWidth ? value[k] : 0.0f;
+    }
+    if (regular.sides != 0) end_at_sides(control, regular.sides);
+    return true;
+  }
+
   /// One face made ready: its own control points in a row.
   struct Patch {
     const Surface* surface = nullptr;    ///< null: regular
@@ -85,14 +98,8 @@ class FacePatches {
   void prepare(std::size_t face, Patch& patch, std::vector<float>& scratch) const {
     const Chunk& chunk = chunks_[face / kChunk];
     const std::uint16_t slot = face_slots_[face];
-    if (slot < kGeneral) {
+    if (regular_control(face, patch.control)) {
       patch.surface = nullptr;
-      const RegularPatch& regular = chunk.regular[slot];
-      for (std::size_t i = 0; i < 16; ++i) {
-        const float* const value = &values_[static_cast<std::size_t>(regular.indices[i]) * kWidth];
-        for (std::size_t k = 0; k < 4; ++k) patch.control[4 * i + k] = k < kWidth ? value[k] : 0.0f;
-      }
-      if (regular.sides != 0) end_at_sides(patch.control, regular.sides);
       patch.scale = extent(patch.control.data(), 16, 4);
       return;
     }

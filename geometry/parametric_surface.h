@@ -11,6 +11,8 @@
 
 namespace raytree {
 
+struct BezierPatch;
+
 /// How a face's parameters lie.
 enum class FaceDomain : std::uint8_t {
   quad,          ///< the unit square; corners (0,0), (1,0), (1,1), (0,1)
@@ -60,6 +62,14 @@ class ParametricSurface {
   /// The same for texture coordinates, (0, 0) without; coordinates: [parameters.size()].
   virtual void evaluate_texture(std::size_t face, std::span<const Vec2f> parameters,
                                 std::span<Vec2f> coordinates) const = 0;
+
+  /// Whether the face is one bicubic polynomial over its parameters, a quad; `patch` gets it then, relative to origin()
+  /// and with equal weights. Faces of subdivision surfaces without extraordinary vertices and semi-sharp creases are,
+  /// and polynomial patches without a collapsed side.
+  virtual bool polynomial_patch(std::size_t face, BezierPatch& patch) const {
+    (void)face, (void)patch;
+    return false;
+  }
 
   /// The cage's polygon or what else the user would call this face; for messages and for material runs.
   virtual std::uint32_t source_face(std::size_t face) const = 0;

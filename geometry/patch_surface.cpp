@@ -331,6 +331,19 @@ void PatchSurface::evaluate(std::size_t face, std::span<const Vec2f> parameters,
       patches_[face]);
 }
 
+bool PatchSurface::polynomial_patch(std::size_t face, BezierPatch& patch) const {
+  for (const FaceEdge& side : sides_[face])
+    if (side.collapsed) return false;
+  if (const auto* bezier = std::get_if<BezierPatch>(&patches_[face])) {
+    patch = *bezier;
+  } else {
+    const std::optional<BezierPatch> same = as_bezier_patch(std::get<CoonsPatch>(patches_[face]));
+    if (!same) return false;
+    patch = *same;
+  }
+  return std::all_of(patch.weights.begin(), patch.weights.end(), [&](double w) { return w == patch.weights[0]; });
+}
+
 std::vector<LimitPatch> PatchSurface::limit_patches() const {
   std::vector<LimitPatch> result(patches_.size());
   for (std::size_t face = 0; face < patches_.size(); ++face) {

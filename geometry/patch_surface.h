@@ -50,6 +50,7 @@ class PatchSurface final : public ParametricSurface {
   void evaluate(std::size_t face, std::span<const Vec2f> parameters, std::span<SurfaceSample> samples) const override;
   void evaluate_texture(std::size_t face, std::span<const Vec2f> parameters,
                         std::span<Vec2f> coordinates) const override;
+  bool polynomial_patch(std::size_t face, BezierPatch& patch) const override;
   std::uint32_t source_face(std::size_t face) const override { return static_cast<std::uint32_t>(face); }
 
   /// Each face as one Bezier patch, relative to origin(). Empty where some face is none: a Coons patch over rational

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "geometry/bicubic_spline.h"
 #include "geometry/facet_pattern.h"
 #include "geometry/osd_topology.h"
 
@@ -50,18 +51,9 @@ void end_at_sides(SixteenPoints& p, int sides) {
   }
 }
 
-/// Four points of a uniform cubic B-spline, each `step` from the next, become those of the Bezier curve.
-void spline_to_bezier(SixteenPoints& p, std::size_t first, std::size_t step) {
-  Vec3d &a = p[first], &b = p[first + step], &c = p[first + 2 * step], &d = p[first + 3 * step];
-  const Vec3d begin = (a + b * 4.0 + c) / 6, end = (b + c * 4.0 + d) / 6;
-  const Vec3d second = (b * 2.0 + c) / 3, third = (b + c * 2.0) / 3;
-  a = begin, b = second, c = third, d = end;
-}
-
 SixteenPoints bezier_of_spline(SixteenPoints p, int open_sides) {
   end_at_sides(p, open_sides);
-  for (std::size_t i = 0; i < 4; ++i) spline_to_bezier(p, 4 * i, 1);
-  for (std::size_t i = 0; i < 4; ++i) spline_to_bezier(p, i, 4);
+  spline_to_bezier(p);
   return p;
 }
 

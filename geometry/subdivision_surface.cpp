@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "geometry/bezier_patch.h"
 #include "geometry/newell.h"
 #include "geometry/osd_patches.h"
 
@@ -90,6 +91,16 @@ class SubdivisionSurface final : public ParametricSurface {
   }
 
   std::uint32_t source_face(std::size_t face) const override { return static_cast<std::uint32_t>(face); }
+
+  bool polynomial_patch(std::size_t face, BezierPatch& patch) const override {
+    BicubicControl control;
+    if (!positions_->regular_control(face, control)) return false;
+    for (std::size_t i = 0; i < 16; ++i)
+      patch.points[i] = Vec3d(control[4 * i], control[4 * i + 1], control[4 * i + 2]);
+    spline_to_bezier(patch.points);
+    patch.weights.fill(1);
+    return true;
+  }
 
   void evaluate(std::size_t face, std::span<const Vec2f> parameters, std::span<SurfaceSample> samples) const override {
     // Patch points that are not kept live here between the calls of one thread.
@@ -194,12 +205,19 @@ class SubdivisionSurface final : public ParametricSurface {
       first_sides_[face + 1] =
           first_sides_[face] + static_cast<std::size_t>(level.GetFaceVertices(static_cast<int>(face)).size());
     sides_.resize(first_sides_.back());
+    const bool folds = has_fold(level);
+    // Two faces that share a vertex whole around may lie back to back.
+    const auto is_folded = [&](int edge) {
+      const auto ends = level.GetEdgeVertices(edge);
+      return folds && (is_fold(level, ends[0]) || is_fold(level, ends[1]));
+    };
     const auto is_sharp_edge = [&](int edge) {
-      return faceted || level.IsEdgeBoundary(edge) || level.IsEdgeInfSharp(edge) || level.IsEdgeNonManifold(edge);
+      return faceted || is_folded(edge) || level.IsEdgeBoundary(edge) || level.IsEdgeInfSharp(edge) ||
+             level.IsEdgeNonManifold(edge);
     };
     const auto is_sharp_vertex = [&](int vertex) {
-      if (faceted || level.IsVertexInfSharp(vertex) || level.IsVertexNonManifold(vertex) ||
-          level.IsVertexBoundary(vertex))
+      if (faceted || (folds && is_fold(level, vertex)) || level.IsVertexInfSharp(vertex) ||
+          level.IsVertexNonManifold(vertex) || level.IsVertexBoundary(vertex))
         return true;
       int sharp = 0;  // one alone is a dart's end, where the normals of both sides agree
       for (const int edge : level.GetVertexEdges(vertex)) sharp += is_sharp_edge(edge);

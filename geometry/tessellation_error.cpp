@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/facet_pattern_set.h"
+#include "geometry/polynomial_rates.h"
 
 namespace raytree {
 namespace {
@@ -27,10 +28,10 @@ constexpr std::array<Weights, kSamplesPerFacet> sample_weights() {
 constexpr std::array<Weights, kSamplesPerFacet> kWeights = sample_weights();
 
 /// Triangles [begin, end) of one face, which start at `first` in the mesh; facets: the pattern's, as the mesh has them.
-FacetDeviation measure(const ParametricSurface& surface, std::size_t face, const FacetPattern& pattern,
-                       const std::vector<std::uint32_t>& facets, const std::vector<std::uint8_t>& hard,
-                       const TriangleMesh& mesh, std::size_t first, std::size_t begin, std::size_t end,
-                       const TessellationView& view) {
+TessellationError measure(const ParametricSurface& surface, std::size_t face, const FacetPattern& pattern,
+                          const std::vector<std::uint32_t>& facets, const std::vector<std::uint8_t>& hard,
+                          const TriangleMesh& mesh, std::size_t first, std::size_t begin, std::size_t end,
+                          const TessellationView& view, double tolerance, bool regular) {
   const std::size_t sides = surface.sides(face).size();
   const FaceDomain domain = surface.domain(face);
   std::vector<Vec2f> parameters((end - begin) * kSamplesPerFacet);
@@ -42,7 +43,7 @@ FacetDeviation measure(const ParametricSurface& surface, std::size_t face, const
         kWeights, &parameters[(f - begin) * kSamplesPerFacet]);
   }
   surface.evaluate(face, parameters, samples);
-  FacetDeviation largest;
+  TessellationError error;
   const SurfaceSample* sample = samples.data();
   for (std::size_t f = begin; f < end; ++f) {
     std::array<FacetCorner, 3> corners;
@@ -52,9 +53,16 @@ FacetDeviation measure(const ParametricSurface& surface, std::size_t face, const
                     Vec3d(mesh.normals[mesh.normal_corners.empty() ? mesh.corners[c] : mesh.normal_corners[c]])};
     }
     const SampledFacet facet(view, surface.origin(), corners, hard_edges(&facets[3 * f], hard));
+    FacetDeviation largest;
     for (const Weights& weights : kWeights) largest.include(facet.at(*sample++, weights));
+    NormalError& normals = !facet.judges_normals() ? error.small : regular ? error.regular : error.irregular;
+    normals.include({1, largest.shading > tolerance ? 1u : 0u, largest.angle, largest.shading});
+    if (!facet.judges_normals()) largest.angle = largest.shading = 0;
+    error.largest.include(largest);
   }
-  return largest;
+  error.triangles = end - begin;
+  error.samples = samples.size();
+  return error;
 }
 
 std::vector<std::uint32_t> facets_with_area(const ParametricSurface& surface, std::size_t face,
@@ -68,7 +76,7 @@ std::vector<std::uint32_t> facets_with_area(const ParametricSurface& surface, st
   return facets;
 }
 
-FacetDeviation larger(FacetDeviation a, const FacetDeviation& b) {
+TessellationError merged_errors(TessellationError a, const TessellationError& b) {
   a.include(b);
   return a;
 }
@@ -76,15 +84,13 @@ FacetDeviation larger(FacetDeviation a, const FacetDeviation& b) {
 }  // namespace
 
 TessellationError measure_tessellation(const ParametricSurface& surface, const TessellationRates& rates,
-                                       const TriangleMesh& mesh, const TessellationView& view) {
-  TessellationError error;
+                                       const TriangleMesh& mesh, const TessellationView& view, double tolerance) {
   const FacetPatternSet patterns(surface, rates);
   std::vector<std::size_t> first(surface.face_count() + 1, 0);
   std::vector<std::uint16_t> face_rates;
   for (std::size_t face = 0; face < surface.face_count(); ++face) {
     first[face + 1] = first[face];
     if (surface.sides(face).empty()) continue;
-    ++error.faces;
     if (has_collapsed_side(surface.sides(face))) {
       rates_of_face(surface, rates, face, face_rates);
       const FacetPattern pattern = make_facet_pattern(surface.domain(face), face_rates);
@@ -93,12 +99,10 @@ TessellationError measure_tessellation(const ParametricSurface& surface, const T
       first[face + 1] += patterns.counts(face).facets;
     }
   }
-  error.triangles = first.back();
-  error.samples = error.triangles * kSamplesPerFacet;
   using Range = tbb::blocked_range<std::size_t>;
-  error.largest = tbb::parallel_reduce(
-      Range(0, surface.face_count()), FacetDeviation(),
-      [&](const Range& range, FacetDeviation largest) {
+  return tbb::parallel_reduce(
+      Range(0, surface.face_count()), TessellationError(),
+      [&](const Range& range, TessellationError error) {
         std::vector<std::uint16_t> own_rates;
         for (std::size_t face = range.begin(); face != range.end(); ++face) {
           if (surface.sides(face).empty()) continue;
@@ -113,20 +117,21 @@ TessellationError measure_tessellation(const ParametricSurface& surface, const T
           if (has_collapsed_side(surface.sides(face))) with_area = facets_with_area(surface, face, own_rates, pattern);
           const std::vector<std::uint32_t>& corners =
               has_collapsed_side(surface.sides(face)) ? with_area : pattern.facets;
-          largest.include(tbb::parallel_reduce(
-              Range(0, corners.size() / 3, kFacetsAtOnce), FacetDeviation(),
-              [&](const Range& facets, FacetDeviation so_far) {
+          const bool regular = is_regular(surface, face);
+          ++error.faces;
+          error.include(tbb::parallel_reduce(
+              Range(0, corners.size() / 3, kFacetsAtOnce), TessellationError(),
+              [&](const Range& facets, TessellationError so_far) {
                 for (std::size_t begin = facets.begin(); begin < facets.end(); begin += kFacetsAtOnce)
                   so_far.include(measure(surface, face, pattern, corners, hard, mesh, first[face], begin,
-                                         std::min(facets.end(), begin + kFacetsAtOnce), view));
+                                         std::min(facets.end(), begin + kFacetsAtOnce), view, tolerance, regular));
                 return so_far;
               },
-              larger));
+              merged_errors));
         }
-        return largest;
+        return error;
       },
-      larger);
-  return error;
+      merged_errors);
 }
 
 }  // namespace raytree

@@ -1,5 +1,5 @@
-// What a tessellation claims, measured: the largest distance between its facets and the limit surface, found by
-// sampling all of them densely.
+// What a tessellation claims, measured: the largest distance between its facets and the limit surface, and how far
+// normals are off, found by sampling all of them densely.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,41 @@
 
 namespace raytree {
 
+/// Of facets that are held to the same.
+struct NormalError {
+  std::uint64_t facets = 0;
+  std::uint64_t over = 0;  ///< of these, whose shading is off by more than the tolerance
+  double angle = 0;        ///< largest, radians
+  double shading = 0;      ///< largest, pixels as FacetDeviation has them
+
+  void include(const NormalError& other) {
+    facets += other.facets, over += other.over;
+    angle = std::max(angle, other.angle);
+    shading = std::max(shading, other.shading);
+  }
+};
+
 struct TessellationError {
   std::uint64_t faces = 0;      ///< of the surface, without holes
   std::uint64_t triangles = 0;  ///< of the tessellation
   std::uint64_t samples = 0;    ///< points of the limit surface compared
-  FacetDeviation largest;
+  FacetDeviation largest;       ///< normals: of facets that are judged by them
+  /// Facets of kShortestShadedEdge and more, of regular faces (see is_regular(): held to the tolerance) and of all
+  /// others (to kIrregularShading times as much); and those that are too small to be held to anything.
+  NormalError regular, irregular, small;
+
+  void include(const TessellationError& other) {
+    faces += other.faces, triangles += other.triangles, samples += other.samples;
+    largest.include(other.largest);
+    regular.include(other.regular), irregular.include(other.irregular), small.include(other.small);
+  }
 };
 
 /// Compares each facet of `mesh`, which tessellate(surface, rates) has made, with the limit surface at kSamplesPerFacet
-/// points. Runs on the task arena's threads; the result does not depend on their number.
+/// points. `tolerance`: for NormalError::over. Runs on the task arena's threads; the result does not depend on their
+/// number.
 TessellationError measure_tessellation(const ParametricSurface& surface, const TessellationRates& rates,
-                                       const TriangleMesh& mesh, const TessellationView& view);
+                                       const TriangleMesh& mesh, const TessellationView& view, double tolerance);
 
 inline constexpr int kSamplesPerFacet = 12;
 

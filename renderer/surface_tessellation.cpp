@@ -138,7 +138,8 @@ TriangleMesh SurfaceTessellation::make(const ParametricSurface& surface, const S
     record.bytes = bytes_of(mesh);
     record.coarse_faces = found.coarse_faces;
     for (std::size_t face = 0; face < surface.face_count(); ++face) record.faces += !surface.sides(face).empty();
-    if (measure_) record.measured = measure_tessellation(surface, found.rates, mesh, view);
+    if (measure_) record.measured = measure_tessellation(surface, found.rates, mesh, view, settings_.tolerance);
+    if (settings_.rate == 0) record.tolerance = settings_.tolerance;
     return mesh;
   } catch (const Error& error) {
     if (!error.where().file.empty()) throw;

@@ -60,10 +60,27 @@ TEST(CurvedSurfaceFlags, TessellationIsMeasuredOnRequest) {
   EXPECT_GT(record["bytes"].get<double>(), 0);
   EXPECT_GT(record["measured"]["largest_pixels"].get<double>(), 0);
   EXPECT_LE(record["measured"]["largest_pixels"].get<double>(), 0.25);
+  const Json& normals = record["measured"]["normals"];
+  std::uint64_t judged = 0;
+  for (const char* kind : {"regular", "irregular", "small"}) {
+    judged += normals[kind]["triangles"].get<std::uint64_t>();
+    EXPECT_GE(normals[kind]["share_over_tolerance"].get<double>(), 0);
+  }
+  EXPECT_EQ(judged, record["triangles"].get<std::uint64_t>());
+  // All faces of a cube meet vertices of three: held to eight times the tolerance.
+  EXPECT_EQ(normals["regular"]["triangles"], 0);
+  EXPECT_EQ(normals["irregular"]["bound_shading_pixels"], 2);
+  EXPECT_LE(normals["irregular"]["largest_shading_pixels"].get<double>(), 2);
+  EXPECT_GT(normals["irregular"]["largest_angle_degrees"].get<double>(), 0);
+  EXPECT_TRUE(normals["small"]["bound_shading_pixels"].is_null());
+  EXPECT_TRUE(s.info({"--tessellation", "--rate",
+                      "3"})["objects"][0]["tessellation"]["measured"]["normals"]["irregular"]["bound_shading_pixels"]
+                  .is_null());
   EXPECT_FALSE(s.info({})["objects"][0]["tessellation"].contains("measured"));
   const ProgramResult text = run_program({"info", s.scene, "--tessellation"});
   ASSERT_EQ(text.status, 0);
-  EXPECT_TRUE(contains(text.out, "tessellation")) << text.out;
+  for (const char* part : {"tessellation", "pixels off", "normals", "irregular", "held to", "2.0000"})
+    EXPECT_TRUE(contains(text.out, part)) << text.out;
 }
 
 TEST(CurvedSurfaceFlags, HierarchyAndMemorySayWhatIsBuilt) {

@@ -1,4 +1,5 @@
-// The claim of tolerance on real surfaces: subdivision cages of other programs, and the teapot's patches.
+// The claim of tolerance on real surfaces: subdivision cages of other programs, and the teapot's patches. Distance,
+// and normals by class.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -43,20 +44,31 @@ Outcome tessellated(const ParametricSurface& surface, double height, double tole
   const TessellationView view = view_of(surface, height);
   const ViewRates found = rates_for_view(surface, view, tolerance);
   const TriangleMesh mesh = tessellate(surface, found.rates);
-  return {mesh.triangle_count(), found.coarse_faces, measure_tessellation(surface, found.rates, mesh, view)};
+  return {mesh.triangle_count(), found.coarse_faces, measure_tessellation(surface, found.rates, mesh, view, tolerance)};
+}
+
+double share_over(const NormalError& normals) {
+  return normals.facets == 0 ? 0 : 100.0 * double(normals.over) / double(normals.facets);
 }
 
 void expect_within(const std::string& name, const ParametricSurface& surface, double height, double tolerance) {
   SCOPED_TRACE(name);
   const Outcome outcome = tessellated(surface, height, tolerance);
-  std::printf("%-32s %8zu triangles, %.3f px off, shading %.3f px, %zu coarse\n", name.c_str(), outcome.triangles,
-              outcome.error.largest.pixels, outcome.error.largest.shading, outcome.coarse);
+  const TessellationError& error = outcome.error;
+  std::printf(
+      "%-32s %8zu triangles, %.3f px off; shading: regular %7zu, %.3f px; irregular %7zu, %.3f px, %.1f %% over; "
+      "small %7zu, %.1f %% over; %zu coarse\n",
+      name.c_str(), outcome.triangles, error.largest.pixels, std::size_t(error.regular.facets), error.regular.shading,
+      std::size_t(error.irregular.facets), error.irregular.shading, share_over(error.irregular),
+      std::size_t(error.small.facets), share_over(error.small), outcome.coarse);
   // Faces that the rates give up on are counted, and warned of.
   if (outcome.coarse == 0) {
-    EXPECT_LE(outcome.error.largest.pixels, tolerance);
+    EXPECT_LE(error.largest.pixels, tolerance);
+    EXPECT_LE(error.regular.shading, tolerance);
+    EXPECT_LE(error.irregular.shading, kIrregularShading * tolerance);
   }
-  // Shading is reported: facets of a few pixels are not cut for its sake.
-  EXPECT_EQ(outcome.error.triangles, outcome.triangles);
+  EXPECT_EQ(error.triangles, outcome.triangles);
+  EXPECT_EQ(error.regular.facets + error.irregular.facets + error.small.facets, outcome.triangles);
 }
 
 TEST(TessellationCages, OwnCagesKeepTheTolerance) {
@@ -65,6 +77,37 @@ TEST(TessellationCages, OwnCagesKeepTheTolerance) {
     expect_within("star " + std::to_string(valence),
                   *make_subdivision_surface(test::star_cage(valence), {}, {}, warnings), 500, 0.25);
   expect_within("cube", *make_subdivision_surface(test::cube_cage(), {}, {}, warnings), 500, 0.25);
+}
+
+TEST(TessellationCages, SemiSharpCreasesKeepTheirBound) {
+  Warnings warnings;
+  for (const double sharpness : {0.5, 1.0, 2.5, 4.0, 6.0}) {
+    SubdivisionRules rules;
+    rules.creases = {{{4, 5, 7, 6, 4}, sharpness}};
+    const auto surface = make_subdivision_surface(test::cube_cage(), rules, {}, warnings);
+    expect_within("cube, a face creased by " + std::to_string(sharpness), *surface, 500, 0.25);
+  }
+}
+
+TEST(TessellationCages, NormalsAreJudgedOfAllFacetsOfSixPixels) {
+  Warnings warnings;
+  const auto surface = make_subdivision_surface(test::star_cage(7), {}, {}, warnings);
+  const TessellationView view = view_of(*surface, 300);
+  const TessellationRates rates = uniform_rates(*surface, 12);
+  const TriangleMesh mesh = tessellate(*surface, rates);
+  std::uint64_t small = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d a(mesh.positions[mesh.corners[3 * t + k]]), b(mesh.positions[mesh.corners[3 * t + (k + 1) % 3]]);
+      longest = std::max(longest, view.pixels(mesh.origin + a, b - a));
+    }
+    small += longest < 6;
+  }
+  const TessellationError error = measure_tessellation(*surface, rates, mesh, view, 0.25);
+  EXPECT_EQ(error.small.facets, small);
+  EXPECT_GT(small, 0u);
+  EXPECT_LT(small, mesh.triangle_count());
 }
 
 TEST(TessellationCages, CagesOfOthersKeepTheTolerance) {

@@ -11,35 +11,19 @@
 #include "geometry/angle.h"
 #include "geometry/tessellation_error.h"
 #include "tests/geometry/analytic_surfaces.h"
+#include "tests/geometry/tessellation_views.h"
 #include "tests/mesh_expectations.h"
 
 namespace raytree {
 namespace {
 
-/// The same pixel everywhere.
-TessellationView everywhere(double pixel) {
-  TessellationView view;
-  view.pixel = pixel;
-  return view;
-}
+using test::everywhere, test::perspective;
 
-/// From `eye` to the origin, up is y; `width` x `height` pixels over a vertical field of view of 40 degrees.
-TessellationView perspective(const Vec3d& eye, double width, double height) {
-  TessellationView view;
-  view.projection = TessellationView::Projection::perspective;
-  view.eye = eye;
-  view.forward = (-eye).normalized();
-  view.right = view.forward.cross(Vec3d(0, 1, 0)).normalized();
-  view.up = view.right.cross(view.forward);
-  view.pixel = 2 * std::tan(20 * kDegree) / height;
-  view.half_width = width / 2;
-  view.half_height = height / 2;
-  return view;
-}
+constexpr double kErrorTolerance = 0.25;
 
 TessellationError error_of(const ParametricSurface& surface, const TessellationRates& rates,
                            const TessellationView& view) {
-  return measure_tessellation(surface, rates, tessellate(surface, rates), view);
+  return measure_tessellation(surface, rates, tessellate(surface, rates), view, kErrorTolerance);
 }
 
 TEST(TessellationView, PixelsAreThoseOfTheProjection) {
@@ -118,7 +102,7 @@ TEST(TessellationError, OfAnNGonIsThatOfItsParaboloid) {
             Vec3d(mesh.positions[mesh.corners[c]]) - Vec3d(mesh.positions[mesh.corners[c % 3 == 2 ? c - 2 : c + 1]]);
         longest = std::max(longest, d.x * d.x + d.z * d.z);
       }
-      const TessellationError error = measure_tessellation(surface, rates, mesh, everywhere(1));
+      const TessellationError error = measure_tessellation(surface, rates, mesh, everywhere(1), kErrorTolerance);
       // The rim bulges beyond the outermost facets.
       const double bulge = 1 - std::cos(kPi / (sides * rate));
       EXPECT_LT(error.largest.distance, height / 3 * longest + bulge + 1e-6) << sides << " " << rate;
