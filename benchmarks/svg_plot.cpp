@@ -36,7 +36,7 @@ double round_step(double low, double high) {
   const double span = high > low ? high - low : std::max(1.0, std::abs(low));
   const double decade = std::pow(10.0, std::floor(std::log10(span / 5)));
   const double share = span / 5 / decade;
-  return decade * (share < 2 ? 2 : share < 5 ? 5 : 10);
+  return decade * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
 }
 
 std::vector<double> linear_ticks(double low, double high, double step) {
@@ -189,12 +189,14 @@ const char* const kPlotStyle = R"(
 std::vector<double> logarithmic_ticks(double low, double high) {
   constexpr std::size_t kMostTicks = 9;
   std::vector<double> fine, powers;
-  for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, power) <= high; ++power)
+  const int first = static_cast<int>(std::floor(std::log10(low))), last = static_cast<int>(std::log10(high)) + 1;
+  const int step = (last - first) / static_cast<int>(kMostTicks) + 1;
+  for (int power = first; power <= last; ++power)
     for (const int digit : {1, 2, 5}) {
       const double tick = digit * std::pow(10.0, power);
       if (tick < low || tick > high) continue;
       fine.push_back(tick);
-      if (digit == 1) powers.push_back(tick);
+      if (digit == 1 && power % step == 0) powers.push_back(tick);
     }
   return fine.size() > kMostTicks ? powers : fine;
 }

@@ -11,7 +11,8 @@
 
 namespace raytree::benchmarks {
 
-/// 1, 2 and 5 times powers of ten within [low, high]; powers of ten alone where there would be more than nine.
+/// 1, 2 and 5 times powers of ten within [low, high]; powers of ten alone where there would be more than nine,
+/// and of more than nine of those every so many.
 std::vector<double> logarithmic_ticks(double low, double high);
 
 enum class PlotScale : std::uint8_t { logarithmic, linear };

@@ -17,7 +17,9 @@ std::string chosen(std::uint64_t primitives, double rays, std::uint64_t memory =
 
 // Pixels must not depend on threads, so what does is never chosen by itself, however much time it saves.
 TEST(TracerChoice, WhatDependsOnThreadsIsTakenByNameAlone) {
-  EXPECT_EQ(chosen(10'000'000, 2e6), "balanced");
+  for (const double rays : {0.0, 2e6, 1e9})
+    for (const std::uint64_t primitives : {0u, 1000u, 10'000'000u})
+      for (const double partners : {0.0, 1.0}) EXPECT_NE(chosen(primitives, rays, 0, partners), "quick");
   EXPECT_FALSE(hierarchy_named("quick").chosen->repeatable);
   EXPECT_EQ(chosen(10'000'000, 1e9), "balanced");
   EXPECT_EQ(chosen(1000, 2e6), "balanced");
@@ -28,11 +30,14 @@ TEST(TracerChoice, QuadsAreTakenWhereBuildingCountsAndTrianglesPair) {
   EXPECT_EQ(chosen(10'000'000, 2e6, 0, 1), "quads");
   EXPECT_EQ(chosen(10'000'000, 1e9, 0, 1), "balanced") << "many rays";
   EXPECT_EQ(chosen(1000, 2e6, 0, 1), "balanced") << "building takes no time";
-  EXPECT_EQ(chosen(10'000'000, 2e6, 0, 0.3), "balanced") << "few have partners";
+  EXPECT_EQ(chosen(10'000'000, 2e7, 0, 0.3), "balanced") << "few have partners";
 }
 
+// What is handed over in fewer bytes is also built sooner.
+TEST(TracerChoice, CompactOnesAreTakenForFewRays) { EXPECT_EQ(chosen(10'000'000, 2e6), "compact"); }
+
 TEST(TracerChoice, MemoryIsKept) {
-  EXPECT_EQ(chosen(10'000'000, 2e6, 700'000'000), "balanced");
+  EXPECT_EQ(chosen(10'000'000, 2e7, 700'000'000), "balanced");
   EXPECT_EQ(chosen(10'000'000, 1e9, 600'000'000, 1), "quads");
   EXPECT_EQ(chosen(10'000'000, 1e9, 400'000'000), "compact");
   EXPECT_EQ(chosen(10'000'000, 1e9, 320'000'000, 1), "compact-quads");
