@@ -82,8 +82,7 @@ TEST(SvgPlot, LinearAxesHaveRoundTicks) {
   ASSERT_EQ(points.size(), 4u);
   EXPECT_NEAR(points[3].x - points[2].x, 3 * (points[1].x - points[0].x), 0.4);
   EXPECT_NEAR(points[3].y - points[2].y, 3 * (points[1].y - points[0].y), 0.4);
-  for (const char* tick : {">-4<", ">0<", ">6<", ">12<", ">-1<", ">3<"})
-    EXPECT_TRUE(contains(svg, tick)) << tick;
+  for (const char* tick : {">-4<", ">0<", ">6<", ">12<", ">-1<", ">3<"}) EXPECT_TRUE(contains(svg, tick)) << tick;
 }
 
 TEST(SvgPlot, PlotsStandOneUnderAnotherAndLevelsLieWhereTheySay) {
