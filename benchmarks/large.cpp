@@ -74,15 +74,30 @@ std::vector<Figure> measure_large(const MeasureContext& context) {
   const std::string self = context.programs / "raytree_measure";
 
   std::vector<double> peaks;
-  const auto render_to_file = [&] {
-    const ChildResult child = run_child_apart(
-        self,
-        {context.programs / "raytree", "render", kTerrainSceneName, "--set",
-         fmt::format("{}={}", kTerrainCountPath, kTriangles), "--size",
-         fmt::format("{}x{}", scene.image.width, scene.image.height), "--threads", std::to_string(kThreads), "-o",
-         picture, "--stats", statistics, "--quiet", "--progress", "none"},
-        context.scratch);
+  const auto rendered = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {context.programs / "raytree",
+                                      "render",
+                                      kTerrainSceneName,
+                                      "--set",
+                                      fmt::format("{}={}", kTerrainCountPath, kTriangles),
+                                      "--size",
+                                      fmt::format("{}x{}", scene.image.width, scene.image.height),
+                                      "--threads",
+                                      std::to_string(kThreads),
+                                      "-o",
+                                      picture,
+                                      "--stats",
+                                      statistics,
+                                      "--quiet",
+                                      "--progress",
+                                      "none"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ChildResult child = run_child_apart(self, words, context.scratch);
     require_success(child, "raytree render");
+    return child;
+  };
+  const auto render_to_file = [&] {
+    const ChildResult child = rendered({});
     peaks.push_back(static_cast<double>(child.peak_bytes));
     return child.wall_seconds;
   };
@@ -124,7 +139,21 @@ std::vector<Figure> measure_large(const MeasureContext& context) {
   memory.note = fmt::format("{:.0f} MiB peak; {:.0f} MiB arrays, {:.0f} MiB Embree, {:.0f} MiB film",
                             (memory.measured.median * (arrays + embree) + film + kRoomForTheRest) / kMebibyte,
                             arrays / kMebibyte, embree / kMebibyte, film / kMebibyte);
-  return {time, memory};
+
+  Figure quads;
+  quads.row = "large";
+  quads.what =
+      "launch to EXR of the same as triangles (--hierarchy balanced) / as quads, which is what the renderer takes";
+  quads.measured = measure_pairs(
+                       [&] {
+                         return rendered({"--hierarchy", "balanced"}).wall_seconds;
+                       },
+                       [&] {
+                         return rendered({"--hierarchy", "quads"}).wall_seconds;
+                       },
+                       limits)
+                       .ratio;
+  return {time, memory, quads};
 }
 
 }  // namespace raytree::benchmarks

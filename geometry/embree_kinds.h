@@ -1,5 +1,6 @@
 // The kinds of geometry that Embree offers for a tessellated surface, built over the same surface and traced by the
-// same rays by bare calls: for the benchmark that compares them. The renderer builds triangles.
+// same rays by bare calls: for the benchmark that compares them. The renderer builds triangles or quads
+// of pairs (quad_pairs.h).
 #pragma once
 
 #include <cstddef>
