@@ -1,4 +1,5 @@
-// Whether this build carries AddressSanitizer: g++ says so by a macro, clang by a feature.
+// Whether this build carries AddressSanitizer: g++ says so by a macro, clang by a feature. Its shadow
+// memory and quarantine are no memory of the program: the most that something takes cannot be told there.
 #pragma once
 
 namespace raytree {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/sanitized.h"
 #include "benchmarks/reference_scenes.h"
 #include "tests/benchmarks/chart_samples.h"
 
@@ -25,7 +26,7 @@ TEST(ChartRenderMemory, GrowsByTheFilmsSize) {
   const double grown = static_cast<double>(*large.peak_bytes) - static_cast<double>(*small.peak_bytes);
   EXPECT_GE(grown, film - 1e6);
   // Threads may work on more tiles of the larger picture at once.
-  if (test::kPlainMemory) {
+  if (!kAddressSanitized) {
     EXPECT_LE(grown, film + 4e6);
   }
 }
@@ -42,7 +43,7 @@ TEST(ChartRenderMemory, HoldsArraysAndTracerAtLeast) {
   const double grown = static_cast<double>(*many.peak_bytes) - static_cast<double>(*few.peak_bytes);
   EXPECT_GE(static_cast<double>(*many.peak_bytes), counted(many) - 1e6);
   EXPECT_GE(grown, counted(many) - counted(few) - 2e6);
-  if (test::kPlainMemory) {
+  if (!kAddressSanitized) {
     EXPECT_LE(grown, 3 * (counted(many) - counted(few)));
   }
 }

@@ -10,20 +10,6 @@ namespace raytree::test {
 /// Why tests of peak memory are left out where PeakMemory knows none.
 inline constexpr const char* kNoPeakMemory = "LEFT OUT: /proc/self/clear_refs does not work here";
 
-/// Whether memory is taken as the program asks for it. Sanitizers keep what is freed and lay shadows beside what is
-/// taken: there, what a stretch of work takes at most cannot be told.
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool kPlainMemory = false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-inline constexpr bool kPlainMemory = false;
-#else
-inline constexpr bool kPlainMemory = true;
-#endif
-#else
-inline constexpr bool kPlainMemory = true;
-#endif
-
 /// A point that took so long and is off by so much, in every metric.
 inline benchmarks::ChartPoint charted_point(const std::string& knob, const std::string& value, double seconds,
                                             double error) {
