@@ -22,7 +22,7 @@
 #include "geometry/subdivision_surface.h"
 #include "geometry/tessellation.h"
 #include "geometry/tessellation_rates.h"
-#include "renderer/image_file.h"
+#include "renderer/atomic_file.h"
 #include "renderer/scene_fields.h"
 
 namespace raytree::app {

@@ -7,7 +7,7 @@
 #include <ctime>
 
 #include "app/exit_status.h"
-#include "renderer/image_file.h"
+#include "renderer/atomic_file.h"
 
 namespace raytree::app {
 namespace {

@@ -16,6 +16,7 @@
 #include "app/spd_counts_text.h"
 #include "app/statistics_json.h"
 #include "geometry/stopwatch.h"
+#include "renderer/atomic_file.h"
 #include "renderer/film_image.h"
 #include "renderer/spd_counts.h"
 
@@ -134,9 +135,8 @@ class RenderRun {
     const Clock::time_point begin = Clock::now();
     for (const OutputFile& output : options_.outputs) {
       progress_.phase("writing " + output.path);
-      const std::vector<std::byte> bytes = encode_image(image(output, film, shown, common), output.format);
-      check_interruption();
-      write_file_atomically(output.path, bytes.data(), bytes.size());
+      write_image_file(output.path, image(output, film, shown, common), output.format,
+                       [this] { check_interruption(); });
       report_.files.push_back(output.path);
       check_interruption();
     }

@@ -153,9 +153,8 @@ void make_sheet(const SheetOptions& options, Progress& progress, const Interrupt
     }
   progress.clear();
   if (!options.quiet) print_warnings(warnings, false);
-  const std::vector<std::byte> bytes = encode_image(sheet.image(), image_format(options.output));
   if (interruption.stop()) return;
-  write_file_atomically(options.output, bytes.data(), bytes.size());
+  write_image_file(options.output, sheet.image(), image_format(options.output));
   if (options.quiet) return;
   print_message(fmt::format("wrote {} ({} scenes, each flat, gouraud, phong and limit)", options.output, rows));
 }

@@ -17,6 +17,7 @@
 #include "benchmarks/stability/stability_maps.h"
 #include "benchmarks/stability/stability_page.h"
 #include "benchmarks/stability/stability_report.h"
+#include "renderer/atomic_file.h"
 
 namespace raytree::app {
 namespace {

@@ -12,6 +12,8 @@
 #include "app/truth.h"
 #include "benchmarks/planted_fault.h"
 #include "benchmarks/validation.h"
+#include "renderer/atomic_file.h"
+#include "renderer/image_file.h"
 
 namespace raytree::app {
 namespace {
@@ -123,8 +125,7 @@ void write_report(const ValidateOptions& options, const ValidationReport& report
   if (!options.json.empty() && options.json != kInPlace) write_file_atomically(options.json, json.data(), json.size());
   if (options.picture.empty()) return;
   std::array<std::vector<std::uint8_t>, 3> planes;
-  const std::vector<std::byte> bytes = encode_image(benchmarks::marked_image(report, planes), ImageFormat::png);
-  write_file_atomically(options.picture, bytes.data(), bytes.size());
+  write_image_file(options.picture, benchmarks::marked_image(report, planes), ImageFormat::png);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Files that appear whole or not at all: written and synced without a name, so that not even kill -9 leaves anything,
 // then given their name; where the file system knows no nameless files, a temporary file beside the target that is
-// renamed. What is not a regular file (devices, pipes, descriptors under /dev/fd) is written in place.
+// renamed.
+#include "renderer/atomic_file.h"
+
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
@@ -16,9 +18,9 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "geometry/error.h"
-#include "renderer/image_file.h"
 
 namespace raytree {
 namespace {
@@ -75,6 +77,7 @@ class Descriptor {
   explicit Descriptor(int number) : number_(number) {}
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
   ~Descriptor() {
     if (number_ >= 0) ::close(number_);
   }
@@ -117,12 +120,13 @@ class WriteSignalsBlocked {
   sigset_t ours_, before_;
 };
 
-// 0, or errno.
-int write_all(int descriptor, const void* bytes, std::size_t size) {
+// All of the bytes by one(at, size left); 0, or errno.
+template <class One>
+int write_all(const void* bytes, std::size_t size, One&& one) {
   const WriteSignalsBlocked blocked;
   const char* at = static_cast<const char*>(bytes);
   while (size > 0) {
-    const ssize_t written = ::write(descriptor, at, std::min<std::size_t>(size, std::size_t{1} << 30));
+    const ssize_t written = one(at, std::min<std::size_t>(size, std::size_t{1} << 30));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) return errno;
     if (written == 0) return ENOSPC;
@@ -130,10 +134,6 @@ int write_all(int descriptor, const void* bytes, std::size_t size) {
     size -= static_cast<std::size_t>(written);
   }
   return 0;
-}
-
-void write_to_descriptor(const std::string& path, int descriptor, const void* bytes, std::size_t size) {
-  if (const int code = write_all(descriptor, bytes, size)) fail(path, "cannot write", code);
 }
 
 // The descriptor that a path such as /dev/fd/3, /proc/self/fd/3 or /dev/stdout names.
@@ -186,22 +186,6 @@ int open_in_place(const std::string& path, bool pipe) {
 
 std::atomic<unsigned> temporary_counter{0};
 
-/// What is to be written, and where.
-struct Whole {
-  const std::string& path;      // as the caller named it, for messages
-  const std::string& target;    // what links lead to
-  const struct stat* existing;  // null: there is no file yet
-  const void* bytes;
-  std::size_t size;
-};
-
-void fill(const Descriptor& file, const Whole& whole) {
-  // Keeping the mode is a courtesy: file systems without modes refuse it.
-  if (whole.existing != nullptr && ::fchmod(file.number(), whole.existing->st_mode & 07777) != 0) errno = 0;
-  if (const int code = write_all(file.number(), whole.bytes, whole.size)) fail(whole.path, "cannot write", code);
-  if (::fsync(file.number()) != 0) fail(whole.path, "cannot write to the disk", errno);
-}
-
 std::string temporary_name(const std::string& folder) {
   return (folder == "/" ? "" : folder) + "/.raytree-" + std::to_string(::getpid()) + "-" +
          std::to_string(temporary_counter++) + ".part";
@@ -209,91 +193,179 @@ std::string temporary_name(const std::string& folder) {
 
 constexpr int kNameAttempts = 1000;  // names may be left by a process of the same number that was killed
 
-/// Moves a finished file from its temporary name to its own.
-void put_in_place(TemporaryName& name, const std::string& temporary, const Whole& whole) {
-  if (::rename(temporary.c_str(), whole.target.c_str()) != 0)
-    fail(whole.path, "cannot put the finished file in place", errno);
-  name.kept();
-}
-
-/// Gives the nameless file its name. False: the system gives it none (no /proc, no links); nothing is left then.
-bool name_nameless(const Descriptor& file, const std::string& folder, const Whole& whole) {
-  const std::string source = "/proc/self/fd/" + std::to_string(file.number());
-  const auto link_to = [&](const std::string& name) {
-    return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
-  };
-  if (whole.existing == nullptr && link_to(whole.target)) return true;
-  // A link replaces nothing, only a rename does: the finished file passes through a temporary name.
-  for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
-    const std::string temporary = temporary_name(folder);
-    TemporaryName name(temporary);
-    if (!link_to(temporary)) {
-      if (errno == EEXIST) continue;
-      return false;
-    }
-    name.created();
-    put_in_place(name, temporary, whole);
-    return true;
-  }
-  return false;
-}
-
-/// False where the file system knows no nameless files.
-bool write_nameless(const std::string& folder, const Whole& whole) {
-  const Descriptor file(::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
-  if (file.number() < 0) return false;
-  fill(file, whole);
-  return name_nameless(file, folder, whole);
-}
-
-void write_beside_and_rename(const std::string& folder, const Whole& whole) {
-  for (int attempt = 0;; ++attempt) {
-    const std::string temporary = temporary_name(folder);
-    TemporaryName name(temporary);
-    Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666));
-    if (file.number() < 0) {
-      if (errno == EEXIST && attempt < kNameAttempts) continue;
-      fail(whole.path, "cannot create a file in folder " + folder, errno);
-    }
-    name.created();
-    fill(file, whole);
-    if (const int code = file.close()) fail(whole.path, "cannot write", code);
-    put_in_place(name, temporary, whole);
-    return;
-  }
-}
-
-void write_whole(const Whole& whole) {
-  // A new file would replace one that its owner protected.
-  if (whole.existing != nullptr && ::access(whole.target.c_str(), W_OK) != 0) fail(whole.path, "cannot write", errno);
-  const std::string folder = folder_of(whole.target);
-  if (!write_nameless(folder, whole)) write_beside_and_rename(folder, whole);
-  // Makes the new name outlast a power cut; the file itself is whole already, so a refusal is no failure.
-  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (directory.number() >= 0 && ::fsync(directory.number()) != 0) errno = 0;
-}
-
 }  // namespace
 
-void write_file_atomically(const std::string& path, const void* bytes, std::size_t size) {
-  if (path == "-") return write_to_descriptor(path, STDOUT_FILENO, bytes, size);
-  if (path.empty()) fail("(no name)", "cannot write", ENOENT);
-  const std::string target = link_target(path);
-  if (const std::optional<int> descriptor = named_descriptor(target))
-    return write_to_descriptor(path, *descriptor, bytes, size);
+struct AtomicFile::State {
+  explicit State(std::string as_named) : path(std::move(as_named)) {}
 
-  struct stat status {};
-  const bool exists = ::stat(target.c_str(), &status) == 0;
-  if (!exists && errno != ENOENT) fail(path, "cannot write", errno);
-  if (exists && S_ISDIR(status.st_mode)) fail(path, "cannot write", EISDIR);
-  if (exists && !S_ISREG(status.st_mode)) {
-    Descriptor file(open_in_place(target, S_ISFIFO(status.st_mode)));
-    if (file.number() < 0) fail(path, "cannot open", errno);
-    write_to_descriptor(path, file.number(), bytes, size);
-    if (const int code = file.close()) fail(path, "cannot write", code);
-    return;
+  std::string path;    // as the caller named it, for messages
+  std::string target;  // what links lead to
+  std::optional<struct stat> existing;
+  std::string folder;
+  std::string temporary;              // name of the file so far; empty: it has none
+  std::optional<TemporaryName> name;  // of `temporary`
+  std::optional<Descriptor> file;
+  bool in_place = false;   // a device, a pipe or a descriptor: takes bytes in their order only
+  std::vector<char> kept;  // what is to go to a file in place
+
+  void open() {
+    if (path == "-") return take_place(duplicate(STDOUT_FILENO));
+    if (path.empty()) fail("(no name)", "cannot write", ENOENT);
+    target = link_target(path);
+    if (const std::optional<int> descriptor = named_descriptor(target)) return take_place(duplicate(*descriptor));
+    struct stat status {};
+    if (::stat(target.c_str(), &status) == 0)
+      existing = status;
+    else if (errno != ENOENT)
+      fail(path, "cannot write", errno);
+    if (existing && S_ISDIR(existing->st_mode)) fail(path, "cannot write", EISDIR);
+    if (existing && !S_ISREG(existing->st_mode))
+      return take_place(open_in_place(target, S_ISFIFO(existing->st_mode)), "cannot open");
+    // A new file would replace one that its owner protected.
+    if (existing && ::access(target.c_str(), W_OK) != 0) fail(path, "cannot write", errno);
+    folder = folder_of(target);
+    file.emplace(::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
+    if (file->number() < 0) return open_beside();  // the file system knows no nameless files
+    keep_mode();
   }
-  write_whole({path, target, exists ? &status : nullptr, bytes, size});
+
+  /// A courtesy: file systems without modes refuse it.
+  void keep_mode() const {
+    if (existing && ::fchmod(file->number(), existing->st_mode & 07777) != 0) errno = 0;
+  }
+
+  static int duplicate(int descriptor) { return ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0); }
+
+  void take_place(int descriptor, const char* problem = "cannot write") {
+    if (descriptor < 0) fail(path, problem, errno);
+    file.emplace(descriptor);
+    in_place = true;
+  }
+
+  void open_beside() {
+    for (int attempt = 0;; ++attempt) {
+      temporary = temporary_name(folder);
+      name.emplace(temporary);
+      file.emplace(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666));
+      if (file->number() >= 0) break;
+      if (errno != EEXIST || attempt >= kNameAttempts) fail(path, "cannot create a file in folder " + folder, errno);
+    }
+    name->created();
+    keep_mode();
+  }
+
+  bool has_name() const { return name.has_value(); }
+
+  /// Makes the new name outlast a power cut; the file itself is whole already, so a refusal is no failure.
+  void sync_folder() const {
+    const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (directory.number() >= 0 && ::fsync(directory.number()) != 0) errno = 0;
+  }
+
+  void write_in_place(const void* bytes, std::size_t size) {
+    const auto one = [&](const char* at, std::size_t left) { return ::write(file->number(), at, left); };
+    if (const int code = write_all(bytes, size, one)) fail(path, "cannot write", code);
+  }
+
+  /// Moves the finished file from its temporary name to its own.
+  void put_in_place() {
+    if (::rename(temporary.c_str(), target.c_str()) != 0) fail(path, "cannot put the finished file in place", errno);
+    name->kept();
+  }
+
+  /// Gives the nameless file its name. False: the system gives it none (no /proc, no links).
+  bool name_nameless() {
+    const std::string source = "/proc/self/fd/" + std::to_string(file->number());
+    const auto link_to = [&](const std::string& link) {
+      return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, link.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    };
+    if (!existing && link_to(target)) return true;
+    // A link replaces nothing, only a rename does: the finished file passes through a temporary name.
+    for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
+      temporary = temporary_name(folder);
+      name.emplace(temporary);
+      if (!link_to(temporary)) {
+        if (errno == EEXIST) continue;
+        return false;
+      }
+      name->created();
+      put_in_place();
+      return true;
+    }
+    return false;
+  }
+
+  /// What a file without a name holds, in one that has one.
+  void copy_beside() {
+    const Descriptor nameless = std::move(*file);
+    open_beside();
+    std::vector<char> piece(std::size_t{1} << 20);
+    for (std::uint64_t offset = 0;;) {
+      const ssize_t count = ::pread(nameless.number(), piece.data(), piece.size(), static_cast<off_t>(offset));
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) fail(path, "cannot write", errno);
+      if (count == 0) return;
+      write_at(offset, piece.data(), static_cast<std::size_t>(count));
+      offset += static_cast<std::uint64_t>(count);
+    }
+  }
+
+  void write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
+    const auto one = [&](const char* at, std::size_t left) {
+      const std::size_t done = static_cast<std::size_t>(at - static_cast<const char*>(bytes));
+      return ::pwrite(file->number(), at, left, static_cast<off_t>(offset + done));
+    };
+    if (const int code = write_all(bytes, size, one)) fail(path, "cannot write", code);
+  }
+
+  void sync() {
+    if (::fsync(file->number()) != 0) fail(path, "cannot write to the disk", errno);
+  }
+
+  void close() {
+    if (const int code = file->close()) fail(path, "cannot write", code);
+  }
+};
+
+AtomicFile::AtomicFile(const std::string& path) : state_(std::make_unique<State>(path)) { state_->open(); }
+
+AtomicFile::~AtomicFile() = default;
+
+void AtomicFile::write(std::uint64_t offset, const void* bytes, std::size_t size) {
+  if (!state_->in_place) return state_->write_at(offset, bytes, size);
+  std::vector<char>& kept = state_->kept;
+  if (kept.size() < offset + size) kept.resize(offset + size);
+  if (size > 0) std::memcpy(kept.data() + offset, bytes, size);
+}
+
+void AtomicFile::commit() {
+  State& state = *state_;
+  if (state.in_place) {
+    state.write_in_place(state.kept.data(), state.kept.size());
+    return state.close();
+  }
+  if (!state.has_name()) {
+    state.sync();
+    if (state.name_nameless()) return state.sync_folder();
+    state.copy_beside();
+  }
+  state.sync();
+  state.close();
+  state.put_in_place();
+  state.sync_folder();
+}
+
+void AtomicFile::commit_whole(const void* bytes, std::size_t size) {
+  if (!state_->in_place) {
+    state_->write_at(0, bytes, size);
+    return commit();
+  }
+  state_->write_in_place(bytes, size);
+  state_->close();
+}
+
+void write_file_atomically(const std::string& path, const void* bytes, std::size_t size) {
+  AtomicFile(path).commit_whole(bytes, size);
 }
 
 void remove_unfinished_file() noexcept {

@@ -1,5 +1,5 @@
 // The program's side of image files: picks the format, opens the module that knows it on demand, hands planes over and
-// takes bytes or planes back. Writing to disk is atomic_file.cpp's.
+// takes bytes or planes back. Writing to disk is atomic_file's.
 #include "renderer/image_file.h"
 
 #include <dlfcn.h>
@@ -11,13 +11,14 @@
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <mutex>
-#include <new>
 #include <string_view>
 #include <system_error>
 #include <thread>
 
 #include "geometry/error.h"
+#include "renderer/atomic_file.h"
 #include "renderer/image_io/image_io.h"
 
 namespace raytree {
@@ -185,9 +186,9 @@ int module_format(ImageFormat format) {
 
 // Both sinks of encode() share one context. No exception may cross the module: what fails is kept.
 struct Encoding {
-  std::vector<std::byte> bytes;
+  const ByteSink& sink;
+  std::exception_ptr problem;  ///< what the sink threw
   std::string error;
-  bool out_of_memory = false;
 };
 
 }  // namespace
@@ -215,7 +216,7 @@ void finish_preloads() {
   for (Module* module : {&image_module(), &exr_module(), &png_module()}) module->wait();
 }
 
-std::vector<std::byte> encode_image(const Image& image, ImageFormat format, EncodeReport* report) {
+EncodeReport encode_image(const Image& image, ImageFormat format, const ByteSink& sink) {
   std::vector<RaytreePlane> planes;
   for (const ImagePlane& plane : image.planes)
     planes.push_back({plane.name.c_str(), module_type(plane.type), module_type(plane.source_type), plane.pixels});
@@ -237,25 +238,48 @@ std::vector<std::byte> encode_image(const Image& image, ImageFormat format, Enco
   request.threads = static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 
   const RaytreeImageIo& io = encoding_module(format).table();
-  Encoding result;
-  std::int64_t half_clamped = 0;
-  const auto take_bytes = [](void* context, const void* bytes, std::size_t size) {
+  Encoding result{sink, nullptr, {}};
+  EncodeReport report;
+  const auto take_piece = [](void* context, std::uint64_t offset, const void* bytes, std::size_t size) {
     auto& target = *static_cast<Encoding*>(context);
+    if (target.problem) return 0;
     try {
-      const auto* begin = static_cast<const std::byte*>(bytes);
-      target.bytes.assign(begin, begin + size);
-    } catch (const std::bad_alloc&) {
-      target.out_of_memory = true;
+      target.sink(offset, bytes, size);
+      return 1;
+    } catch (...) {
+      target.problem = std::current_exception();
+      return 0;
     }
   };
   const auto take_error = [](void* context, const void* bytes, std::size_t size) {
     static_cast<Encoding*>(context)->error.assign(static_cast<const char*>(bytes), size);
   };
-  if (io.encode(&request, take_bytes, take_error, &result, &half_clamped) == 0 || result.out_of_memory)
-    throw Error(ErrorKind::failure, {},
-                "cannot encode the picture: " + (result.out_of_memory ? "not enough memory" : result.error));
-  if (report != nullptr) report->half_clamped = half_clamped;
-  return std::move(result.bytes);
+  const bool encoded = io.encode(&request, take_piece, take_error, &result, &report.half_clamped) != 0;
+  // Asked first: OpenEXR ends its files in a destructor, which reports nothing.
+  if (result.problem) std::rethrow_exception(result.problem);
+  if (!encoded) throw Error(ErrorKind::failure, {}, "cannot encode the picture: " + result.error);
+  return report;
+}
+
+std::vector<std::byte> encode_image(const Image& image, ImageFormat format) {
+  std::vector<std::byte> file;
+  const auto take = [&](std::uint64_t offset, const void* bytes, std::size_t size) {
+    if (file.size() < offset + size) file.resize(offset + size);
+    if (size > 0) std::memcpy(file.data() + offset, bytes, size);
+  };
+  encode_image(image, format, take);
+  return file;
+}
+
+EncodeReport write_image_file(const std::string& path, const Image& image, ImageFormat format,
+                              const std::function<void()>& before_commit) {
+  AtomicFile file(path);
+  const EncodeReport report =
+      encode_image(image, format,
+                   [&](std::uint64_t offset, const void* bytes, std::size_t size) { file.write(offset, bytes, size); });
+  if (before_commit) before_commit();
+  file.commit();
+  return report;
 }
 
 int DecodedImage::plane_index(const std::string& name) const {

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,18 +53,21 @@ struct EncodeReport {
   std::int64_t half_clamped = 0;  ///< finite values beyond 65504 that became 65504 in planes of type half
 };
 
-/// The encoded file, made with as many threads as TBB's global_control allows; its bytes do not depend on them.
-/// Throws Error (failure).
-std::vector<std::byte> encode_image(const Image& image, ImageFormat format, EncodeReport* report = nullptr);
+/// Takes bytes [offset, offset + size) of a file. They come in order, but for places left at the beginning that are
+/// written again at the end (EXR's table of lines).
+using ByteSink = std::function<void(std::uint64_t offset, const void* bytes, std::size_t size)>;
 
-/// Writes bytes to `path` whole or not at all: into a file without a name (O_TMPFILE; where that is not to be had, a
-/// temporary file beside it), fsync, then the name; links are followed and the mode of an existing file is kept. "-" is
-/// standard output; devices, pipes and /dev/fd/N are written in place. An existing file stays as it was when anything
-/// fails. Throws Error (failure) with the path and the system's reason.
-void write_file_atomically(const std::string& path, const void* bytes, std::size_t size);
+/// Encodes a picture, with as many threads as TBB's global_control allows; the bytes do not depend on them. The sink is
+/// called from this thread, with a piece at a time, while others encode the next. Throws Error (failure), or what the
+/// sink threw.
+EncodeReport encode_image(const Image& image, ImageFormat format, const ByteSink& sink);
 
-/// Removes the temporary files of writes under way, if any. Async-signal-safe: for the handler of an interruption.
-void remove_unfinished_file() noexcept;
+/// The same, the whole file in memory.
+std::vector<std::byte> encode_image(const Image& image, ImageFormat format);
+
+/// Encodes straight into an AtomicFile. `before_commit` is called when all is written and may throw to leave no file.
+EncodeReport write_image_file(const std::string& path, const Image& image, ImageFormat format,
+                              const std::function<void()>& before_commit = {});
 
 /// A picture read back: float planes named as in the file, [height][width].
 struct DecodedImage {

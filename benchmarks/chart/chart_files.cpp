@@ -11,6 +11,7 @@
 
 #include "benchmarks/chart/chart_page.h"
 #include "benchmarks/chart/chart_svg.h"
+#include "renderer/atomic_file.h"
 #include "renderer/film_image.h"
 #include "renderer/image_file.h"
 
@@ -252,8 +253,7 @@ void write_chart(const std::string& folder, const ChartData& data) {
 
 void write_reference(const std::string& folder, const Film& reference) {
   fs::create_directories(folder);
-  const std::vector<std::byte> bytes = encode_image(scene_linear_image(reference, false, {}), ImageFormat::exr);
-  write_file_atomically(in_folder(folder, "reference.exr"), bytes.data(), bytes.size());
+  write_image_file(in_folder(folder, "reference.exr"), scene_linear_image(reference, false, {}), ImageFormat::exr);
 }
 
 }  // namespace raytree::benchmarks

@@ -30,8 +30,7 @@ constexpr float kLargestHalf = 65504;
 DecodedImage written_and_read(const Film& film, bool half, EncodeReport& report) {
   const ScratchFolder folder;
   const std::string file = folder.path() / "values.exr";
-  const auto bytes = encode_image(scene_linear_image(film, half, {}), ImageFormat::exr, &report);
-  write_file_atomically(file, bytes.data(), bytes.size());
+  report = write_image_file(file, scene_linear_image(film, half, {}), ImageFormat::exr);
   return read_image_file(file);
 }
 

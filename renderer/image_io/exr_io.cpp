@@ -1,4 +1,4 @@
-// The module that links OpenEXR, its only use in Raytree: encodes planes to an EXR file in memory. OpenImageIO would
+// The module that links OpenEXR, its only use in Raytree: encodes planes to an EXR file. OpenImageIO would
 // call the same library, but loading OpenImageIO costs a third of a second and OpenEXR some milliseconds.
 #include <Imath/ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -11,7 +11,6 @@
 #include <OpenEXR/ImfThreading.h>
 
 #include <algorithm>
-#include <cstring>
 #include <deque>
 #include <stdexcept>
 #include <string>
@@ -24,25 +23,38 @@ namespace {
 
 using namespace raytree::image_io;
 
-/// A file in memory.
-class MemoryStream : public Imf::OStream {
+/// Gathers what OpenEXR writes a line at a time to pieces worth a call.
+class PieceStream : public Imf::OStream {
  public:
-  explicit MemoryStream(std::size_t expected) : OStream("picture in memory") { bytes_.reserve(expected); }
+  PieceStream(RaytreeFileSink file, void* context) : OStream("picture"), file_(file), context_(context) {
+    piece_.reserve(kPieceBytes);
+  }
 
   void write(const char* data, int size) override {
     const auto count = static_cast<std::size_t>(size);
-    if (bytes_.size() < position_ + count) bytes_.resize(position_ + count);
-    std::memcpy(bytes_.data() + position_, data, count);
-    position_ += count;
+    if (piece_.size() + count > kPieceBytes) flush();
+    piece_.insert(piece_.end(), data, data + count);
   }
-  std::uint64_t tellp() override { return position_; }
-  void seekp(std::uint64_t position) override { position_ = static_cast<std::size_t>(position); }
-
-  const std::vector<char>& bytes() const { return bytes_; }
+  std::uint64_t tellp() override { return begin_ + piece_.size(); }
+  void seekp(std::uint64_t position) override {
+    if (position == tellp()) return;
+    flush();
+    begin_ = position;
+  }
+  void flush() {
+    const std::uint64_t begin = begin_;
+    begin_ += piece_.size();
+    if (!piece_.empty()) hand_over(file_, context_, begin, piece_.data(), piece_.size());
+    piece_.clear();
+  }
 
  private:
-  std::vector<char> bytes_;
-  std::size_t position_ = 0;
+  static constexpr std::size_t kPieceBytes = std::size_t(1) << 20;
+
+  RaytreeFileSink file_;
+  void* context_;
+  std::vector<char> piece_;
+  std::uint64_t begin_ = 0;  ///< where in the file the piece begins
 };
 
 Imf::PixelType file_type(int type) {
@@ -58,7 +70,7 @@ Imf::PixelType file_type(int type) {
   }
 }
 
-std::vector<char> encoded(const RaytreeImage& image, std::int64_t& half_clamped) {
+void encode_to(PieceStream& stream, const RaytreeImage& image, std::int64_t& half_clamped) {
   if (image.plane_count == 0 || image.width <= 0 || image.height <= 0)
     throw std::runtime_error("a picture without pixels");
   const Imath::Box2i frame({0, 0}, {image.frame_width - 1, image.frame_height - 1});
@@ -76,7 +88,6 @@ std::vector<char> encoded(const RaytreeImage& image, std::int64_t& half_clamped)
   const std::size_t pixels = width * static_cast<std::size_t>(image.height);
   std::deque<std::vector<Imath::half>> converted;
   Imf::FrameBuffer buffer;
-  std::size_t pixel_bytes = 0;
   for (std::size_t i = 0; i < image.plane_count; ++i) {
     const RaytreePlane& plane = image.planes[i];
     const Imf::PixelType type = file_type(plane.type);
@@ -94,27 +105,25 @@ std::vector<char> encoded(const RaytreeImage& image, std::int64_t& half_clamped)
     header.channels().insert(plane.name, Imf::Channel(type));
     // OpenEXR only reads from the buffer of an output file. It counts pixels from the frame's corner.
     buffer.insert(plane.name, Imf::Slice::Make(type, values, window, size, size * width));
-    pixel_bytes += size;
   }
 
   // The pool is OpenEXR's own; zero threads of it: the caller's one does the work.
   const int threads = image.threads == 1 ? 0 : image.threads > 1 ? image.threads : 2;
   Imf::setGlobalThreadCount(threads);
-  MemoryStream stream(pixel_bytes * pixels + pixel_bytes * pixels / 16 + (std::size_t(1) << 16));
   {
     Imf::OutputFile file(stream, header, threads);
     file.setFrameBuffer(buffer);
     file.writePixels(image.height);
   }
-  return stream.bytes();
+  stream.flush();
 }
 
-int encode(const RaytreeImage* image, RaytreeBytesSink bytes, RaytreeBytesSink error, void* context,
+int encode(const RaytreeImage* image, RaytreeFileSink file, RaytreeBytesSink error, void* context,
            std::int64_t* half_clamped) {
   return guarded(
       [&] {
-        const std::vector<char> file = encoded(*image, *half_clamped);
-        bytes(context, file.data(), file.size());
+        PieceStream stream(file, context);
+        encode_to(stream, *image, *half_clamped);
       },
       error, context);
 }

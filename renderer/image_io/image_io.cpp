@@ -335,12 +335,12 @@ void decode_file(const char* path, const RaytreeImageSink& sink) {
   }
 }
 
-int encode(const RaytreeImage* image, RaytreeBytesSink bytes, RaytreeBytesSink error, void* context, std::int64_t*) {
+int encode(const RaytreeImage* image, RaytreeFileSink file, RaytreeBytesSink error, void* context, std::int64_t*) {
   return guarded(
       [&] {
-        MemoryFile file;
-        encode_to(file, *image);
-        bytes(context, file.bytes().data(), file.bytes().size());
+        MemoryFile whole;
+        encode_to(whole, *image);
+        hand_over(file, context, 0, whole.bytes().data(), whole.bytes().size());
       },
       error, context);
 }

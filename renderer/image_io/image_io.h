@@ -8,7 +8,7 @@
 
 extern "C" {
 
-enum { kRaytreeImageIoVersion = 2 };
+enum { kRaytreeImageIoVersion = 3 };
 
 enum RaytreePixelType {
   kRaytreeUint8 = 0,
@@ -48,6 +48,9 @@ struct RaytreeImage {
 
 // Calls that receive results; context is handed through. `bytes` live until the call returns.
 typedef void (*RaytreeBytesSink)(void* context, const void* bytes, size_t size);
+// The same of a file under way: bytes [offset, offset + size). In order, but for what is written again at the end.
+// Returns 0 to stop the encoder.
+typedef int (*RaytreeFileSink)(void* context, uint64_t offset, const void* bytes, size_t size);
 
 struct RaytreeImageSink {
   void* context;
@@ -65,7 +68,7 @@ struct RaytreeImageIo {
   int version;
   // Each returns 1, or 0 after handing a message to `error`. half_clamped counts finite values beyond the largest half.
   // decode is null in all modules but raytree_image_io.
-  int (*encode)(const RaytreeImage* image, RaytreeBytesSink bytes, RaytreeBytesSink error, void* context,
+  int (*encode)(const RaytreeImage* image, RaytreeFileSink file, RaytreeBytesSink error, void* context,
                 int64_t* half_clamped);
   int (*decode)(const char* path, const RaytreeImageSink* sink, RaytreeBytesSink error, void* error_context);
 };

@@ -1,8 +1,11 @@
 // What both modules need at their border: calls that let no exception out.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string_view>
 
 #include "renderer/image_io/image_io.h"
@@ -27,6 +30,11 @@ int guarded(const Work& work, RaytreeBytesSink error, void* context) {
     report("an error of unknown kind");
   }
   return 0;
+}
+
+/// Bytes of the file under way, to the program. Throws where it stops the encoder.
+inline void hand_over(RaytreeFileSink file, void* context, std::uint64_t offset, const void* bytes, std::size_t size) {
+  if (file(context, offset, bytes, size) == 0) throw std::runtime_error("the file was not taken");
 }
 
 }  // namespace raytree::image_io

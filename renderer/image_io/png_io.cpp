@@ -134,7 +134,7 @@ bool write(Writer& writer, Target& target, Contents& contents) {
   return true;
 }
 
-int encode(const RaytreeImage* image, RaytreeBytesSink bytes, RaytreeBytesSink error, void* context, std::int64_t*) {
+int encode(const RaytreeImage* image, RaytreeFileSink file, RaytreeBytesSink error, void* context, std::int64_t*) {
   return guarded(
       [&] {
         Contents contents = contents_of(*image);
@@ -142,7 +142,7 @@ int encode(const RaytreeImage* image, RaytreeBytesSink bytes, RaytreeBytesSink e
         target.bytes.reserve(contents.pixels.size() / 2 + 4096);
         Writer writer(target);
         if (!write(writer, target, contents)) throw std::runtime_error(target.error.data());
-        bytes(context, target.bytes.data(), target.bytes.size());
+        hand_over(file, context, 0, target.bytes.data(), target.bytes.size());
       },
       error, context);
 }

@@ -1,4 +1,6 @@
 // Files appear whole or not at all, whatever the disk, the place and the system do.
+#include "renderer/atomic_file.h"
+
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -12,7 +14,6 @@
 #include <thread>
 
 #include "geometry/error.h"
-#include "renderer/image_file.h"
 #include "tests/temporary_folder.h"
 
 namespace raytree {
@@ -22,7 +23,7 @@ using namespace test;
 namespace fs = std::filesystem;
 
 /// A folder of its own for each test.
-class AtomicFile : public ::testing::Test {
+class AtomicFileTest : public ::testing::Test {
  protected:
   std::string path(const std::string& name) const { return folder_.path(name); }
 
@@ -44,7 +45,7 @@ std::string write_error(const std::string& path, const std::string& text) {
   return "";
 }
 
-TEST_F(AtomicFile, WritesAndReplaces) {
+TEST_F(AtomicFileTest, WritesAndReplaces) {
   write_text(path("a"), "first");
   EXPECT_EQ(file_text(path("a")), "first");
   fs::permissions(path("a"), fs::perms(0640));
@@ -62,7 +63,39 @@ TEST_F(AtomicFile, WritesAndReplaces) {
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a", "b", longest}));
 }
 
-TEST_F(AtomicFile, LinksAreFollowed) {
+TEST_F(AtomicFileTest, PiecesStandOnlyOnceCommitted) {
+  write_text(path("a"), "old");
+  {
+    AtomicFile file(path("a")), fresh(path("b"));
+    file.write(0, "abcdef", 6);
+    fresh.write(3, "z", 1);
+    EXPECT_EQ(file_text(path("a")), "old");
+    EXPECT_FALSE(fs::exists(path("b")));
+  }
+  EXPECT_EQ(file_text(path("a")), "old");
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{"a"});
+  AtomicFile file(path("a"));
+  file.write(0, "abcdef", 6);
+  file.write(6, "gh", 2);
+  file.write(1, "BC", 2);
+  file.commit();
+  EXPECT_EQ(file_text(path("a")), "aBCdefgh");
+
+  // What takes bytes in order only gets them when all are there.
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  AtomicFile in_place("/dev/fd/" + std::to_string(ends[1]));
+  in_place.write(0, "....tail", 8);
+  in_place.write(0, "head", 4);
+  in_place.commit();
+  close(ends[1]);
+  char text[16] = {};
+  EXPECT_EQ(read(ends[0], text, sizeof text), 8);
+  EXPECT_STREQ(text, "headtail");
+  close(ends[0]);
+}
+
+TEST_F(AtomicFileTest, LinksAreFollowed) {
   fs::create_directory(folder_.folder() / "deep");
   write_text(path("deep/target"), "old");
   fs::create_symlink("deep/target", folder_.folder() / "link");
@@ -77,7 +110,7 @@ TEST_F(AtomicFile, LinksAreFollowed) {
   EXPECT_TRUE(contains(write_error(path("loop"), "x"), path("loop")));
 }
 
-TEST_F(AtomicFile, BadTargetsAreErrorsThatSayWhy) {
+TEST_F(AtomicFileTest, BadTargetsAreErrorsThatSayWhy) {
   fs::create_directory(folder_.folder() / "folder");
   write_text(path("file"), "kept");
   const std::string inside = write_error(path("file/inside"), "x");
@@ -91,7 +124,7 @@ TEST_F(AtomicFile, BadTargetsAreErrorsThatSayWhy) {
   EXPECT_EQ(file_text(path("file")), "kept");
 }
 
-TEST_F(AtomicFile, ProtectedPlacesAreErrors) {
+TEST_F(AtomicFileTest, ProtectedPlacesAreErrors) {
   // The superuser may write anywhere, so a child without that right does it.
   write_text(path("file"), "kept");
   fs::create_directory(folder_.folder() / "locked");
@@ -116,7 +149,7 @@ TEST_F(AtomicFile, ProtectedPlacesAreErrors) {
   fs::permissions(folder_.folder() / "locked", fs::perms(0755));
 }
 
-TEST_F(AtomicFile, FullDevicesAndFileLimitsAreErrors) {
+TEST_F(AtomicFileTest, FullDevicesAndFileLimitsAreErrors) {
   const std::string full = write_error("/dev/full", "x");
   EXPECT_TRUE(contains(full, "No space left") && contains(full, "/dev/full")) << full;
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
@@ -140,7 +173,7 @@ TEST_F(AtomicFile, FullDevicesAndFileLimitsAreErrors) {
   EXPECT_EQ(folder_.names(), std::vector<std::string>{"a"});
 }
 
-TEST_F(AtomicFile, PipesAndDescriptorsAreWrittenInPlace) {
+TEST_F(AtomicFileTest, PipesAndDescriptorsAreWrittenInPlace) {
   const std::string text(200000, 'p');  // more than a pipe holds
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   std::string received;
@@ -171,7 +204,7 @@ TEST_F(AtomicFile, PipesAndDescriptorsAreWrittenInPlace) {
   close(ends[1]);
 }
 
-TEST_F(AtomicFile, StandardOutputIsADash) {
+TEST_F(AtomicFileTest, StandardOutputIsADash) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   const pid_t child = fork();
@@ -192,7 +225,7 @@ TEST_F(AtomicFile, StandardOutputIsADash) {
   EXPECT_EQ(text, "by dash by name");
 }
 
-TEST_F(AtomicFile, InterruptedAndKilledWritesLeaveWholeFiles) {
+TEST_F(AtomicFileTest, InterruptedAndKilledWritesLeaveWholeFiles) {
   // SIGTERM's handler removes the temporary file; SIGKILL cannot, but the target is old or new, never a part.
   const std::string old_text(1000, 'o'), new_text(1 << 20, 'n');
   for (int i = 0; i < 18; ++i) {
@@ -220,7 +253,7 @@ TEST_F(AtomicFile, InterruptedAndKilledWritesLeaveWholeFiles) {
   }
 }
 
-TEST_F(AtomicFile, KilledWritesOfANewFileLeaveNothingBehind) {
+TEST_F(AtomicFileTest, KilledWritesOfANewFileLeaveNothingBehind) {
   const int probe = open(folder_.folder().c_str(), O_TMPFILE | O_WRONLY, 0600);
   if (probe < 0)
     GTEST_SKIP() << "no nameless files in " << folder_.folder() << ": a killed write leaves its temporary file";

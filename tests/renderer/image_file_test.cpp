@@ -93,10 +93,7 @@ void expect_metadata(const DecodedImage& image) {
   for (const auto& [name, text] : kMetadata) EXPECT_EQ(metadata_of(image, name), text) << name;
 }
 
-void write_image(const std::string& file, const Image& image) {
-  const std::vector<std::byte> bytes = encode_image(image, image_format(file));
-  write_file_atomically(file, bytes.data(), bytes.size());
-}
+void write_image(const std::string& file, const Image& image) { write_image_file(file, image, image_format(file)); }
 
 bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
@@ -140,10 +137,8 @@ TEST_F(ImageFileTest, HalfClampsWhatItCannotHoldAndCounts) {
   const float expected[8] = {65504, 65504, 65504, 65504, -65504, inf, 1638.0f / 16384, 0x1p-24f};
   for (int c = 0; c < 3; ++c) std::copy(values, values + 8, film.plane(ChannelGroup::color, c));
   std::copy(values, values + 8, film.plane(ChannelGroup::depth, 0));
-  EncodeReport report;
-  const auto bytes = encode_image(scene_linear_image(film, true, {}), ImageFormat::exr, &report);
+  const EncodeReport report = write_image_file(path("h.exr"), scene_linear_image(film, true, {}), ImageFormat::exr);
   EXPECT_EQ(report.half_clamped, 3 * 4);
-  write_file_atomically(path("h.exr"), bytes.data(), bytes.size());
   const DecodedImage image = read_image_file(path("h.exr"));
   const auto red = static_cast<std::size_t>(image.plane_index("R"));
   const auto depth = static_cast<std::size_t>(image.plane_index("Z"));
@@ -267,6 +262,41 @@ TEST(ImageFormatTest, IsTheExtension) {
       EXPECT_EQ(error.kind(), ErrorKind::bad_input);
       for (const char* choice : {".exr", ".png", ".jpg", ".tif"}) EXPECT_TRUE(contains(error.what(), choice));
     }
+}
+
+TEST_F(ImageFileTest, FilesComeInPiecesAndWhatTheSinkThrowsComesBack) {
+  const Film film = full_film(300, 400, {0, 0, 300, 400});
+  const std::vector<std::uint8_t> gray(std::size_t(300) * 400, 100);
+  Image shown;
+  shown.window = {0, 0, 300, 400};
+  shown.planes.push_back({"Y", PixelType::uint8, PixelType::uint8, gray.data()});
+  for (const ImageFormat format : {ImageFormat::exr, ImageFormat::png}) {
+    const Image image = format == ImageFormat::exr ? scene_linear_image(film, false, {}) : shown;
+    const std::vector<std::byte> whole = encode_image(image, format);
+    std::size_t largest = 0, calls = 0;
+    encode_image(image, format, [&](std::uint64_t offset, const void*, std::size_t size) {
+      EXPECT_LE(offset + size, whole.size());
+      largest = std::max(largest, size), ++calls;
+    });
+    // A piece of an EXR is a mebibyte at most, so that what is written is never held as a whole.
+    if (format == ImageFormat::exr) {
+      EXPECT_GT(whole.size(), std::size_t(4) << 20);
+      EXPECT_LE(largest, std::size_t(1) << 20);
+      EXPECT_GE(calls, whole.size() >> 20);
+    }
+    // At the first piece and at the last, which OpenEXR writes where no exception passes.
+    for (const std::size_t refused : {std::size_t(1), calls}) {
+      std::size_t call = 0;
+      const auto refuse = [&](std::uint64_t, const void*, std::size_t) {
+        if (++call == refused) throw std::length_error("full");
+      };
+      EXPECT_THROW(encode_image(image, format, refuse), std::length_error) << refused << " of " << calls;
+      EXPECT_EQ(call, refused);
+    }
+    EXPECT_THROW(write_image_file(path("left"), image, format, [] { throw std::length_error("interrupted"); }),
+                 std::length_error);
+    EXPECT_TRUE(folder_.names().empty());
+  }
 }
 
 TEST_F(ImageFileTest, OddRequestsAreErrors) {

@@ -35,8 +35,7 @@ void expect_reference(SceneDescription scene, const std::string& name) {
   const char* update = std::getenv("RAYTREE_UPDATE_REFERENCES");
   if (update != nullptr && std::string(update) == "1") {
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
-    const std::vector<std::byte> bytes = encode_image(scene_linear_image(result.film, false, {}), ImageFormat::exr);
-    write_file_atomically(path, bytes.data(), bytes.size());
+    write_image_file(path, scene_linear_image(result.film, false, {}), ImageFormat::exr);
   }
   const DecodedImage reference = read_image_file(path);
   ASSERT_EQ(reference.width, kWidth);
