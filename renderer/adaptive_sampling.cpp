@@ -9,7 +9,7 @@
 namespace raytree {
 namespace {
 
-constexpr std::uint32_t kNoSample = ~0u, kNoPlace = ~0u;
+constexpr std::uint32_t kNoSample = SampleLattice::kNoSample;
 
 /// Around a small object squares are divided until their edge is this share of its width: what then still falls between
 /// two samples on its rim is a cap of under 1/300 of a disc.
@@ -18,11 +18,6 @@ constexpr double kEdgePerWidth = 0.25;
 /// Objects narrower than so many edges of the last level's squares are weighed by their outline's area; samples decide
 /// only what they look like. A disc is met for sure from sqrt(2) on.
 constexpr double kTinyWidth = 2;
-
-/// Of a lattice place, both coordinates up to 2^11.
-constexpr std::uint32_t place_of(int x, int y) {
-  return static_cast<std::uint32_t>(y) << 16 | static_cast<std::uint32_t>(x);
-}
 
 /// The pixel of the tile at place `i` of Morton's order, which keeps neighbours together.
 constexpr int morton_coordinate(int i) {
@@ -139,11 +134,15 @@ bool AdaptiveSampler::trace_new_samples(SampleTracer& tracer, double spacing) {
     const std::size_t count = std::min(kBatchSize, positions_.size() - radiance_.size());
     if (!tracer.trace({positions_.data() + radiance_.size(), count}, static_cast<float>(spacing))) return false;
     const SampleResults& results = tracer.results();
+    const std::size_t first = radiance_.size();
+    radiance_.resize(first + count);
+    shown_.resize(first + count);
     for (std::size_t i = 0; i < count; ++i) {
       const bool finite = is_finite(results.radiance[i]);
       if (!finite) ++tracer.statistics().not_finite_samples;
-      radiance_.push_back(finite ? results.radiance[i] : Rgb());
-      shown_.push_back(display_like(radiance_.back()));
+      const Rgb radiance = finite ? results.radiance[i] : Rgb();
+      radiance_[first + i] = radiance;
+      shown_[first + i] = display_like(radiance);
     }
     const auto append = [&](auto& all, const auto& part) {
       if (!part.empty()) all.insert(all.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(count));
@@ -195,21 +194,22 @@ bool AdaptiveSampler::differs_on_a_side(const Square& square) const {
   std::copy(square.corners.begin(), square.corners.end(), samples.begin());
   std::size_t count = 4;
   for (const auto& [x, y] : {std::pair{half, 0}, {0, half}, {size, half}, {half, size}})
-    if (const Slot& slot = slots_[slot_of(square.x + x, square.y + y)]; slot.place != kNoPlace)
-      samples[count++] = slot.sample;
+    if (const std::uint32_t sample = level_samples_.find(square.x + x, square.y + y); sample != kNoSample)
+      samples[count++] = sample;
   return count > 4 && is_too_much(contrast({samples.data(), count}), square.level);
 }
 
 /// Divides the squares of the level under way that want it and traces the samples that this takes; the others are
 /// leaves.
 bool AdaptiveSampler::divide_level(SampleTracer& tracer) {
-  // Five new samples a square, at most half of the slots taken. A sample of one level never lies on one of another: it
-  // is the middle of a side or of a square of this level.
-  slots_.assign(std::bit_ceil(10 * squares_.size() + 1), {kNoPlace, 0});
+  // Five new samples a square at most. A sample of one level never lies on one of another: it is the middle of a side
+  // or of a square of this level.
+  const int level = squares_.front().level;
+  level_samples_.begin(1u << (levels_ - level - 1), std::size_t(kTileSize) << (level + 1), 5 * squares_.size());
   divided_.clear();
   // A pattern is seen through a window as wide as the samples are apart, so the corners of a pixel tell its mean where
   // it is finer than the pixel, and what division adds sees the finer detail that division is for.
-  const double spacing = edge(squares_.front().level + 1);
+  const double spacing = edge(level + 1);
   std::size_t left = 0;
   for (const Square& square : squares_)
     if (wants_division(square))
@@ -262,25 +262,14 @@ void AdaptiveSampler::divide(const Square& square) {
   }
 }
 
-/// The slot of lattice place (x, y), or the one that it would take.
-std::size_t AdaptiveSampler::slot_of(int x, int y) const {
-  const std::uint32_t place = place_of(x, y);
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t i = (place * 0x9E3779B1u >> 8) & mask;
-  while (slots_[i].place != place && slots_[i].place != kNoPlace) i = (i + 1) & mask;
-  return i;
-}
-
 /// The sample at lattice place (x, y) of the level under way, made by the first square that asks for it.
 std::uint32_t AdaptiveSampler::sample_at(int x, int y, int pixel) {
-  Slot& slot = slots_[slot_of(x, y)];
-  if (slot.place == kNoPlace) {
-    const float unit = static_cast<float>(edge(levels_));
-    slot = {place_of(x, y), add_sample({static_cast<float>(x0_) + static_cast<float>(x) * unit,
-                                        static_cast<float>(y0_) + static_cast<float>(y) * unit},
-                                       pixel)};
-  }
-  return slot.sample;
+  return level_samples_.at(x, y, [&] {
+    const auto unit = static_cast<float>(edge(levels_));
+    return add_sample({static_cast<float>(x0_) + static_cast<float>(x) * unit,
+                       static_cast<float>(y0_) + static_cast<float>(y) * unit},
+                      pixel);
+  });
 }
 
 /// Leaves pixel after pixel, in the order that they became leaves.
@@ -340,30 +329,42 @@ void AdaptiveSampler::resolve_pixel(int pixel, std::span<const TinyPart> tiny, T
   const double share = covered > 1 ? 1 / covered : 1;
   const double others = corrects ? (1 - covered * share) / (1 - seen) : 1;
 
+  const auto factor_of = [&](std::uint32_t sample) {
+    double factor = others;
+    for (const TinyPart& part : tiny)
+      if (part.id == hits_[sample].object && part.seen > 0) factor = part.area * share / part.seen;
+    return factor;
+  };
+  const auto for_each_sample = [&](auto&& add) {
+    for (const Square& leaf : leaves_of(pixel)) {
+      const double weight = corner_weight(leaf);
+      for (const std::uint32_t corner : leaf.corners) add(corner, corrects ? weight * factor_of(corner) : weight);
+    }
+    if (corrects)
+      for (const TinyPart& part : tiny)
+        if (part.ray != kNoSample && part.area > 0) add(part.ray, part.area * share);
+  };
+
+  TileSums::ColorSum color;
+  for_each_sample([&](std::uint32_t sample, double weight) { color.add(weight, radiance_[sample]); });
+  sums.add_color(pixel, color);
+  if (sums.has_truncation())
+    for_each_sample(
+        [&](std::uint32_t sample, double weight) { sums.add_truncation(pixel, weight, truncation_[sample]); });
+  if (sums.has_first_hits())
+    for_each_sample([&](std::uint32_t sample, double weight) {
+      if (const FirstHit& hit = hits_[sample]; hit.object != 0) sums.add_first_hit(pixel, weight, hit);
+    });
+  if (!sums.has_ids()) return;
   votes_.clear();
-  const auto add = [&](std::uint32_t sample, double weight) {
-    sums.add_color(pixel, weight, radiance_[sample]);
-    if (sums.has_truncation()) sums.add_truncation(pixel, weight, truncation_[sample]);
-    if (!sums.has_first_hits()) return;
+  for_each_sample([&](std::uint32_t sample, double weight) {
     const FirstHit& hit = hits_[sample];
-    if (hit.object != 0) sums.add_first_hit(pixel, weight, hit);
     const auto vote = std::find_if(votes_.begin(), votes_.end(), [&](const Vote& v) { return v.object == hit.object; });
     if (vote != votes_.end())
       vote->weight += weight;
     else
       votes_.push_back({hit.object, hit.material, weight});
-  };
-  for (const Square& leaf : leaves_of(pixel))
-    for (const std::uint32_t corner : leaf.corners) {
-      double factor = others;
-      if (corrects)
-        for (const TinyPart& part : tiny)
-          if (part.id == hits_[corner].object && part.seen > 0) factor = part.area * share / part.seen;
-      add(corner, corner_weight(leaf) * factor);
-    }
-  if (corrects)
-    for (const TinyPart& part : tiny)
-      if (part.ray != kNoSample && part.area > 0) add(part.ray, part.area * share);
+  });
   // The ids are those of the object that covers most of the pixel; of equals the one met first.
   const auto most =
       std::max_element(votes_.begin(), votes_.end(), [](const Vote& a, const Vote& b) { return a.weight < b.weight; });

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderer/ray_tree.h"
+#include "renderer/sample_lattice.h"
 #include "renderer/scene.h"
 #include "renderer/tile_sums.h"
 
@@ -60,7 +61,6 @@ class AdaptiveSampler {
   float contrast(std::span<const std::uint32_t> samples) const;
   bool is_too_much(float contrast, int level) const;
   void divide(const Square& square);
-  std::size_t slot_of(int x, int y) const;
   std::uint32_t sample_at(int x, int y, int pixel);
   std::uint32_t add_sample(const Vec2f& position, int pixel);
   bool trace_new_samples(SampleTracer& tracer, double spacing);
@@ -71,10 +71,17 @@ class AdaptiveSampler {
   std::span<const Square> leaves_of(int pixel) const {
     return {leaves_.data() + leaf_begin_[pixel], leaves_.data() + leaf_begin_[pixel + 1]};
   }
-  static double edge(int level) { return 1.0 / (1 << level); }
+  static double edge(int level) { return kEdges[static_cast<std::size_t>(level)]; }
   /// What each of a leaf's corners weighs in its pixel.
   static double corner_weight(const Square& leaf) { return edge(leaf.level) * edge(leaf.level) / 4; }
   int pixel_of(const Square& square) const { return (square.y >> levels_) * kTileSize + (square.x >> levels_); }
+
+  /// Of a square of a level, pixels: 2^-level.
+  static constexpr std::array<double, 16> kEdges = [] {
+    std::array<double, 16> edges{};
+    for (std::size_t level = 0; level < edges.size(); ++level) edges[level] = 1.0 / static_cast<double>(1 << level);
+    return edges;
+  }();
 
   const Scene& scene_;
   const int levels_, minimum_level_;
@@ -98,11 +105,7 @@ class AdaptiveSampler {
   std::vector<FirstHit> hits_;
   std::vector<std::uint32_t> ray_counts_;
 
-  /// Samples made in the level under way by their place on the lattice; open addressing.
-  struct Slot {
-    std::uint32_t place, sample;
-  };
-  std::vector<Slot> slots_;
+  SampleLattice level_samples_;  ///< made in the level under way
 
   std::vector<TinyPart> tiny_;  ///< by pixel
 

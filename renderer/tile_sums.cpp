@@ -16,27 +16,29 @@ SampleRecords records_for(const ChannelSet& channels) {
   return records;
 }
 
-TileSums::TileSums(const SampleRecords& records)
-    : color_(kTilePixels),
-      truncation_(records.truncation ? kTilePixels : 0),
-      first_hits_(records.first_hits ? kTilePixels : 0),
-      ray_counts_(records.ray_counts ? kTilePixels : 0) {}
-
-void TileSums::clear() {
-  std::fill(color_.begin(), color_.end(), ColorSum());
-  std::fill(truncation_.begin(), truncation_.end(), ColorSum());
-  std::fill(first_hits_.begin(), first_hits_.end(), FirstHitSum());
-  std::fill(ray_counts_.begin(), ray_counts_.end(), 0u);
+TileSums::TileSums(const ChannelSet& channels) : color_(kTilePixels) {
+  const SampleRecords records = records_for(channels);
+  if (records.truncation) truncation_.resize(kTilePixels);
+  if (records.first_hits) covered_.resize(kTilePixels);
+  if (channels.has(ChannelGroup::depth) || channels.has(ChannelGroup::normal) || channels.has(ChannelGroup::albedo))
+    surfaces_.resize(kTilePixels);
+  if (channels.has(ChannelGroup::object_id) || channels.has(ChannelGroup::material_id)) ids_.resize(kTilePixels);
+  if (records.ray_counts) ray_counts_.resize(kTilePixels);
 }
 
-void TileSums::add_first_hit(int pixel, double weight, const FirstHit& hit) {
-  FirstHitSum& sum = first_hits_[pixel];
-  sum.weight += weight;
-  sum.depth += weight * hit.distance;
-  for (int i = 0; i < 3; ++i) sum.normal[i] += weight * hit.normal[i];
-  sum.albedo[0] += weight * hit.albedo.r;
-  sum.albedo[1] += weight * hit.albedo.g;
-  sum.albedo[2] += weight * hit.albedo.b;
+void TileSums::clear() {
+  const auto zero = [](auto& sums) {
+    std::fill(sums.begin(), sums.end(), typename std::decay_t<decltype(sums)>::value_type());
+  };
+  zero(color_), zero(truncation_), zero(covered_), zero(surfaces_), zero(ids_), zero(ray_counts_);
+}
+
+void TileSums::SurfaceSum::add(double weight, const FirstHit& hit) {
+  depth += weight * hit.distance;
+  for (int i = 0; i < 3; ++i) normal[i] += weight * hit.normal[i];
+  albedo[0] += weight * hit.albedo.r;
+  albedo[1] += weight * hit.albedo.g;
+  albedo[2] += weight * hit.albedo.b;
 }
 
 void TileSums::resolve(int x0, int y0, double weight, Film& film) const {
@@ -71,29 +73,25 @@ void TileSums::resolve(int x0, int y0, double weight, Film& film) const {
     write(ChannelGroup::truncation, 1, [&](int i) { return finite(truncation_[i].g * scale); });
     write(ChannelGroup::truncation, 2, [&](int i) { return finite(truncation_[i].b * scale); });
   }
-  if (channels.has(ChannelGroup::alpha))
-    write(ChannelGroup::alpha, 0, [&](int i) { return first_hits_[i].weight * scale; });
+  if (channels.has(ChannelGroup::alpha)) write(ChannelGroup::alpha, 0, [&](int i) { return covered_[i] * scale; });
   if (channels.has(ChannelGroup::depth))
     write(ChannelGroup::depth, 0, [&](int i) {
-      return first_hits_[i].weight > 0 ? finite(first_hits_[i].depth / first_hits_[i].weight)
-                                       : std::numeric_limits<double>::infinity();
+      return covered_[i] > 0 ? finite(surfaces_[i].depth / covered_[i]) : std::numeric_limits<double>::infinity();
     });
   if (channels.has(ChannelGroup::normal))
     for (int axis = 0; axis < 3; ++axis)
       write(ChannelGroup::normal, axis, [&](int i) {
-        const double* n = first_hits_[i].normal;
+        const double* n = surfaces_[i].normal;
         const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         return length > 0 ? finite(n[axis] / length) : 0.0;
       });
   if (channels.has(ChannelGroup::albedo))
     for (int c = 0; c < 3; ++c)
-      write(ChannelGroup::albedo, c, [&](int i) {
-        return first_hits_[i].weight > 0 ? finite(first_hits_[i].albedo[c] / first_hits_[i].weight) : 0.0;
-      });
-  if (channels.has(ChannelGroup::object_id))
-    write_ids(ChannelGroup::object_id, [&](int i) { return first_hits_[i].object; });
+      write(ChannelGroup::albedo, c,
+            [&](int i) { return covered_[i] > 0 ? finite(surfaces_[i].albedo[c] / covered_[i]) : 0.0; });
+  if (channels.has(ChannelGroup::object_id)) write_ids(ChannelGroup::object_id, [&](int i) { return ids_[i].object; });
   if (channels.has(ChannelGroup::material_id))
-    write_ids(ChannelGroup::material_id, [&](int i) { return first_hits_[i].material; });
+    write_ids(ChannelGroup::material_id, [&](int i) { return ids_[i].material; });
   if (channels.has(ChannelGroup::ray_count)) write_ids(ChannelGroup::ray_count, [&](int i) { return ray_counts_[i]; });
 }
 

@@ -24,7 +24,7 @@ TileTracer::TileTracer(const Scene& scene, const RenderOptions& options, Film& f
     : scene_(scene),
       film_(film),
       samples_(scene, records_for(options.channels, scene.description.render.antialias), options.stop),
-      sums_(records_for(options.channels)) {
+      sums_(options.channels) {
   if (scene.description.render.antialias.method == Antialiasing::Method::whitted) adaptive_.emplace(scene);
   positions_.reserve(kBatchSize);
   places_.reserve(kBatchSize);
@@ -82,7 +82,7 @@ bool TileTracer::finish_chunk() {
       const FirstHit& hit = results.first_hits[i];
       if (hit.object == 0) continue;
       sums_.add_first_hit(places_[i].pixel, 1, hit);
-      if (places_[i].center) sums_.set_ids(places_[i].pixel, hit.object, hit.material);
+      if (places_[i].center && sums_.has_ids()) sums_.set_ids(places_[i].pixel, hit.object, hit.material);
     }
   positions_.clear();
   places_.clear();
