@@ -14,6 +14,9 @@ constexpr std::size_t kPartnerWindow = 4;
 /// Triangles that one task pairs among themselves.
 constexpr std::size_t kBlockOfTriangles = 8192;
 
+/// Blocks, spread over a mesh, that an estimate counts.
+constexpr std::size_t kBlocksLookedAt = 64;
+
 /// Which edge of triangle `a` triangle `b` has too, the other way round; -1: none.
 int shared_edge(const std::uint32_t* a, const std::uint32_t* b) {
   for (int i = 0; i < 3; ++i)
@@ -47,31 +50,36 @@ void pair_block(const std::uint32_t* corners, std::size_t begin, std::size_t end
   }
 }
 
-/// How many quads each block of triangles makes.
-std::vector<std::size_t> quads_of_blocks(std::span<const std::uint32_t> corners) {
-  const std::size_t triangles = corners.size() / 3;
-  std::vector<std::size_t> counts((triangles + kBlockOfTriangles - 1) / kBlockOfTriangles);
-  tbb::parallel_for(std::size_t(0), counts.size(), [&](std::size_t block) {
-    const std::size_t begin = block * kBlockOfTriangles;
-    std::size_t count = 0;
-    pair_block(corners.data(), begin, std::min(triangles, begin + kBlockOfTriangles),
-               [&](std::size_t, std::size_t) { ++count; });
-    counts[block] = count;
-  });
-  return counts;
+std::size_t blocks_of(std::size_t triangles) { return (triangles + kBlockOfTriangles - 1) / kBlockOfTriangles; }
+
+std::size_t quads_of_block(std::span<const std::uint32_t> corners, std::size_t block) {
+  const std::size_t begin = block * kBlockOfTriangles;
+  std::size_t count = 0;
+  pair_block(corners.data(), begin, std::min(corners.size() / 3, begin + kBlockOfTriangles),
+             [&](std::size_t, std::size_t) { ++count; });
+  return count;
 }
 
 }  // namespace
 
-std::size_t count_joined_quads(std::span<const std::uint32_t> corners) {
-  std::size_t sum = 0;
-  for (const std::size_t count : quads_of_blocks(corners)) sum += count;
-  return sum;
+std::size_t estimate_joined_quads(std::span<const std::uint32_t> corners) {
+  const std::size_t triangles = corners.size() / 3, blocks = blocks_of(triangles);
+  const std::size_t step = std::max<std::size_t>(1, blocks / kBlocksLookedAt);
+  std::size_t quads = 0, of = 0;
+  for (std::size_t block = 0; block < blocks; block += step) {
+    quads += quads_of_block(corners, block);
+    of += std::min(triangles - block * kBlockOfTriangles, kBlockOfTriangles);
+  }
+  if (of == triangles) return quads;
+  return static_cast<std::size_t>(static_cast<double>(triangles) * static_cast<double>(quads) /
+                                  static_cast<double>(of));
 }
 
 QuadList joined_quads(std::span<const std::uint32_t> corners) {
   const std::size_t triangles = corners.size() / 3;
-  std::vector<std::size_t> begins = quads_of_blocks(corners);
+  std::vector<std::size_t> begins(blocks_of(triangles));
+  tbb::parallel_for(std::size_t(0), begins.size(),
+                    [&](std::size_t block) { begins[block] = quads_of_block(corners, block); });
   std::size_t count = 0;
   for (std::size_t& begin : begins) {
     const std::size_t size = begin;

@@ -43,8 +43,9 @@ struct QuadList {
 /// the arena; the result does not depend on them. corners: [triangle][3].
 QuadList joined_quads(std::span<const std::uint32_t> corners);
 
-/// How many quads joined_quads() would make.
-std::size_t count_joined_quads(std::span<const std::uint32_t> corners);
+/// How many quads joined_quads() would make: counted up to a million triangles, beyond that in parts of the mesh spread
+/// over it.
+std::size_t estimate_joined_quads(std::span<const std::uint32_t> corners);
 
 /// A point of a triangle: weights of its corners 1 and 2.
 struct TrianglePoint {

@@ -56,7 +56,7 @@ HierarchyDemand hierarchy_demand(const ShapeSet& shapes, std::uint64_t primitive
   if (!worth_counting) return demand;
   const auto join = [&](const BoundedShapes& bounded) {
     for (const MeshEntry& entry : bounded.meshes)
-      demand.quads -= entry.mesh.triangle_count() - count_joined_quads(entry.mesh.corners);
+      demand.quads -= entry.mesh.triangle_count() - estimate_joined_quads(entry.mesh.corners);
   };
   join(shapes);
   for (const BoundedShapes& group : shapes.groups) join(group);

@@ -33,7 +33,7 @@ const std::vector<HierarchyCost>& hierarchy_costs();
 
 struct HierarchyDemand {
   std::uint64_t primitives = 0;      ///< triangles, spheres and the like, each once however often it is used
-  std::uint64_t quads = 0;           ///< the same with triangles joined in pairs
+  std::uint64_t quads = 0;           ///< the same with triangles joined in pairs, estimated
   double rays = 0;                   ///< expected
   std::uint64_t memory_allowed = 0;  ///< bytes, of the hierarchy; 0: any
 };
