@@ -63,6 +63,14 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
                 fmt::format("the window {}x{}+{}+{} does not lie in the frame of {}x{}", window.width, window.height,
                             window.x0, window.y0, image.width, image.height));
 
+  if (!options.pixels.empty()) {
+    const SourceLocation place{scene.description.name, 0, "image"};
+    if (options.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
+      throw Error(ErrorKind::bad_input, place, "the pixels to be traced are not as many as the frame's");
+    if (scene.description.render.antialias.method == Antialiasing::Method::whitted)
+      throw Error(ErrorKind::bad_input, place, "pixels are left out with a grid's samples only, not with Whitted's");
+  }
+
   RenderResult result{Film(image.width, image.height, window, options.channels), {}, true};
   const std::vector<TilePlace> tiles = tiles_of(window, options.tile_order_seed);
   const auto start = Clock::now();

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <span>
 
 #include "renderer/film.h"
 #include "renderer/scene.h"
@@ -45,6 +46,9 @@ struct RenderProgress {
 
 struct RenderOptions {
   PixelWindow window;  ///< of the frame; empty: the whole frame
+  /// [frame height][frame width] 0 for pixels that are left out and stay 0; empty: none is. With a grid's samples only:
+  /// Whitted's corners belong to several pixels. Packets are filled otherwise, so others may change in their last bits.
+  std::span<const std::uint8_t> pixels;
   ChannelSet channels{ChannelGroup::color};
   int threads = 0;                    ///< 0: all of the arena
   std::uint64_t tile_order_seed = 0;  ///< 0: row by row; else shuffled: pixels must not depend on it
@@ -58,8 +62,8 @@ struct RenderResult {
   bool complete = true;  ///< false: stopped; tiles not traced are 0
 };
 
-/// Renders the scene's image. Throws Error (bad_input) for a window that does not lie in the frame; does not throw once
-/// tracing has begun.
+/// Renders the scene's image. Throws Error (bad_input) for a window that does not lie in the frame and for `pixels`
+/// that do not fit; does not throw once tracing has begun.
 RenderResult render(const Scene& scene, const RenderOptions& options);
 
 }  // namespace raytree

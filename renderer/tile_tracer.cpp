@@ -22,6 +22,7 @@ SampleRecords records_for(const ChannelSet& channels, const Antialiasing& antial
 
 TileTracer::TileTracer(const Scene& scene, const RenderOptions& options, Film& film)
     : scene_(scene),
+      pixels_(options.pixels),
       film_(film),
       samples_(scene, records_for(options.channels, scene.description.render.antialias), options.stop),
       sums_(options.channels) {
@@ -62,6 +63,7 @@ bool TileTracer::trace_grid(int x0, int y0, int grid) {
       for (int y = block_y; y < std::min(block_y + kBlockHeight, height); ++y)
         for (int x = block_x; x < std::min(block_x + kBlockWidth, width); ++x) {
           const int pixel_x = pixel_of_[x], pixel_y = pixel_of_[y];
+          if (!wants(x0 + pixel_x, y0 + pixel_y)) continue;
           positions_.emplace_back(static_cast<float>(x0) + (static_cast<float>(x) + 0.5f) * spacing_,
                                   static_cast<float>(y0) + (static_cast<float>(y) + 0.5f) * spacing_);
           places_.push_back({static_cast<std::uint16_t>(pixel_y * kTileSize + pixel_x),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "renderer/adaptive_sampling.h"
@@ -28,9 +29,14 @@ class TileTracer {
 
  private:
   bool trace_grid(int x0, int y0, int grid);
+  /// Whether a pixel of the frame is to be traced.
+  bool wants(int x, int y) const {
+    return pixels_.empty() || pixels_[static_cast<std::size_t>(y) * scene_.description.image.width + x] != 0;
+  }
   bool finish_chunk();
 
   const Scene& scene_;
+  const std::span<const std::uint8_t> pixels_;  ///< as in RenderOptions
   Film& film_;
   SampleTracer samples_;
   TileSums sums_;

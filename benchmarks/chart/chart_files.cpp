@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kChartVersion = 2;  ///< of chart.json
+constexpr int kChartVersion = 3;  ///< of chart.json
 constexpr const char* kParts[] = {"defaults", "ends", "between", "added", "crossed"};
 
 std::string in_folder(const std::string& folder, const std::string& name) { return (fs::path(folder) / name).string(); }
@@ -122,6 +122,7 @@ ChartData data_from_json(const Json& json) {
   data.plan = {reference.at("grid"),
                reference.at("first").get<Words>(),
                reference.at("last").get<Words>(),
+               reference.at("refined_pixels").get<std::vector<std::uint64_t>>(),
                reference.at("depth_residual"),
                reference.at("cutoff"),
                reference.at("words")};
@@ -187,6 +188,7 @@ std::string chart_json(const ChartData& data) {
                        {"grid", data.plan.grid},
                        {"first", data.plan.first},
                        {"last", data.plan.last},
+                       {"refined_pixels", data.plan.refined},
                        {"seconds", data.reference_seconds},
                        {"own_error", errors_json(data.floor)}};
   json["findings"] = Json::array();

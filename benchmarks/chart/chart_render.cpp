@@ -38,7 +38,8 @@ TimeLimit::~TimeLimit() {
 
 std::uint64_t ChartRender::total_rays() const { return std::accumulate(rays.begin(), rays.end(), std::uint64_t{0}); }
 
-ChartRender render_timed(ChartScene scene, int threads, const std::atomic<bool>* stop, Warnings& warnings) {
+ChartRender render_timed(ChartScene scene, int threads, const std::atomic<bool>* stop, Warnings& warnings,
+                         std::span<const std::uint8_t> pixels) {
   ChartRender result;
   scene.prepare.threads = threads;
   scene.prepare.stop = stop;
@@ -46,6 +47,7 @@ ChartRender render_timed(ChartScene scene, int threads, const std::atomic<bool>*
   options.channels = kChartChannels;
   options.threads = threads;
   options.stop = stop;
+  options.pixels = pixels;
   const PeakMemory memory;
   const double cpu_start = process_seconds();
   const Clock::time_point start = Clock::now();

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <thread>
 
 #include "benchmarks/chart/chart_settings.h"
@@ -41,7 +42,9 @@ struct ChartRender {
   std::uint64_t total_rays() const;
 };
 
-/// Prepares and renders once. Warnings of the scene go to `warnings`. A run that `stop` ended is not complete.
-ChartRender render_timed(ChartScene scene, int threads, const std::atomic<bool>* stop, Warnings& warnings);
+/// Prepares and renders once; `pixels` as in RenderOptions. Warnings of the scene go to `warnings`. A run that `stop`
+/// ended is not complete.
+ChartRender render_timed(ChartScene scene, int threads, const std::atomic<bool>* stop, Warnings& warnings,
+                         std::span<const std::uint8_t> pixels = {});
 
 }  // namespace raytree::benchmarks

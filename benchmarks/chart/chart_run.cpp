@@ -137,7 +137,7 @@ class ChartMeasurement {
                                                        options_.budget_seconds, options_.threads, options_.stop);
     if (!plan) return false;
     const bool goes_on = earlier_ != nullptr && same_subject(earlier_->data, data);
-    if (goes_on && earlier_->reference && earlier_->data.plan.grid >= plan->grid) {
+    if (goes_on && earlier_->reference && earlier_->data.plan.is_as_fine_as(*plan)) {
       data.plan = earlier_->data.plan;
       data.floor = earlier_->data.floor;
       data.reference_seconds = earlier_->data.reference_seconds;
@@ -153,7 +153,7 @@ class ChartMeasurement {
       result_.reference = std::move(made->film);
       if (options_.keep_reference) options_.keep_reference(*result_.reference);
     }
-    data.reference_command = command_text(command(data.plan.last));
+    data.reference_command = command_text(command(data.plan.last_flags(0)));
     data.reference_picture = png_of(*result_.reference);
     reference_ = chart_picture(*result_.reference, display_);
     return true;
