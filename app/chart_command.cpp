@@ -164,6 +164,10 @@ class ChartCommand {
     const Words own_words = scene_words(flags_);
     for (const std::string& line : flags_.also) {
       options_.added.push_back(split_words(line));
+      for (const std::string& word : options_.added.back())
+        for (const std::string_view fixed : {"--size", "--camera", "--threads", "--crop", "--output", "-o"})
+          if (word == fixed || word.starts_with(std::string(fixed) + "="))
+            throw usage_error(fmt::format("--also: {} is alike for all of a chart, and no setting", fixed));
       scene_maker(own_words)(options_.added.back());  // what is wrong is said before anything is measured
     }
     // The size is always said, so that commands mean what was measured.

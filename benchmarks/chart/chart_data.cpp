@@ -166,7 +166,7 @@ std::vector<std::size_t> chart_front(const ChartData& data, const MetricInfo& me
   return pareto_front(points);
 }
 
-std::optional<double> cost_of_halving(const std::vector<CostAndError>& front, double floor) {
+std::optional<HalvingCost> cost_of_halving(const std::vector<CostAndError>& front, double floor) {
   double n = 0, sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0;
   for (const CostAndError& point : front) {
     if (!(point.error > floor) || !(point.error > 0) || !(point.cost > 0)) continue;
@@ -175,7 +175,7 @@ std::optional<double> cost_of_halving(const std::vector<CostAndError>& front, do
   }
   const double spread = n * sum_xx - sum_x * sum_x;
   if (n < 3 || !(spread > 1e-12)) return std::nullopt;
-  return std::pow(2.0, -(n * sum_xy - sum_x * sum_y) / spread);
+  return HalvingCost{std::pow(2.0, -(n * sum_xy - sum_x * sum_y) / spread), static_cast<std::size_t>(n)};
 }
 
 std::vector<Finding> findings_of(const ChartData& data) {
@@ -220,10 +220,11 @@ std::vector<Finding> findings_of(const ChartData& data) {
   std::vector<CostAndError> front;
   for (const std::size_t i : indices)
     front.push_back({data.points[i].cpu().median, data.points[i].errors.*primary_metric().value});
-  if (const std::optional<double> factor = cost_of_halving(front, data.floor.rmse))
-    findings.push_back({fmt::format("Along the front each halving of the error costs x{:.2g} in time ({} settings).",
-                                    *factor, front.size()),
-                        std::nullopt});
+  if (const std::optional<HalvingCost> cost = cost_of_halving(front, data.floor.rmse))
+    findings.push_back(
+        {fmt::format("Along the front each halving of the error costs x{:.2g} in time ({} settings{}).", cost->factor,
+                     cost->settings, cost->settings < front.size() ? " above the reference's own error" : ""),
+         std::nullopt});
   const ChartPoint* defaults = defaults_of(data);
   if (defaults != nullptr) {
     const auto index = static_cast<std::size_t>(defaults - data.points.data());

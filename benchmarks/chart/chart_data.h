@@ -65,9 +65,14 @@ std::vector<std::size_t> pareto_front(const std::vector<CostAndError>& points);
 /// Of median processor seconds against a metric.
 std::vector<std::size_t> chart_front(const ChartData& data, const MetricInfo& metric);
 
+struct HalvingCost {
+  double factor = 1;         ///< of time, for half of the error
+  std::size_t settings = 0;  ///< that tell it: those above the floor
+};
+
 /// By what factor time grows along a front with each halving of the error, by least squares in logarithms over the
 /// points above the floor; none where fewer than three are left.
-std::optional<double> cost_of_halving(const std::vector<CostAndError>& front, double floor);
+std::optional<HalvingCost> cost_of_halving(const std::vector<CostAndError>& front, double floor);
 
 /// One finding: a sentence, and the point it speaks of.
 struct Finding {

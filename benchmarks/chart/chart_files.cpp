@@ -109,7 +109,6 @@ ChartPoint point_from_json(const Json& json) {
 
 ChartData data_from_json(const Json& json) {
   ChartData data;
-  if (json.at("raytree_chart") != kChartVersion) throw std::runtime_error("another version");
   data.scene = json.at("scene");
   data.title = json.at("title");
   data.scene_hash = json.at("scene_hash");
@@ -230,13 +229,21 @@ std::optional<EarlierChart> read_earlier_chart(const std::string& folder) {
   std::error_code code;
   if (!fs::exists(path, code)) return std::nullopt;
   EarlierChart earlier;
+  Json version;
   try {
     std::ifstream file(path, std::ios::binary);
-    earlier.data = data_from_json(Json::parse(file));
+    const Json json = Json::parse(file);
+    version = json.at("raytree_chart");
+    if (version == kChartVersion) earlier.data = data_from_json(json);
   } catch (const std::exception&) {
     throw Error(ErrorKind::bad_input, {path, 0, ""},
                 "is no chart of this program; remove it, or choose another folder");
   }
+  if (version != kChartVersion)
+    throw Error(ErrorKind::bad_input, {path, 0, ""},
+                fmt::format("is a chart as another version of this program writes them ({}, this one {}); --fresh "
+                            "measures anew",
+                            version.dump(), kChartVersion));
   for (ChartPoint& point : earlier.data.points) point.picture = bytes_of_file(picture_path(folder, point.key));
   std::erase_if(earlier.data.points, [](const ChartPoint& point) { return point.picture.empty(); });
   earlier.reference = read_reference(in_folder(folder, "reference.exr"), earlier.data.width, earlier.data.height);

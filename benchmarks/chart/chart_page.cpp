@@ -24,7 +24,7 @@ constexpr const char* kChartPageStyle = R"(
 button, select { font: inherit; font-size: 13px; color: var(--ink); background: var(--paper); border: 1px solid var(--line);
   border-radius: 6px; padding: 4px 10px; cursor: pointer; } select { max-width: 380px; }
 button[aria-pressed="true"] { border-color: var(--accent); color: var(--accent); }
-svg.chart { display: block; width: 100%; height: auto; }
+svg.chart { display: block; width: 100%; min-width: 720px; height: auto; }
 .looked-at { display: grid; grid-template-columns: minmax(0, 3fr) minmax(0, 2fr); gap: 28px; margin-top: 16px; }
 .looked-at pre { background: var(--paper); border: 1px solid var(--line); border-radius: 6px; padding: 10px 12px; margin-bottom: 8px; }
 .looked-at td { padding: 2px 0; } .looked-at td.number { padding-left: 16px; } #picture { display: block; margin-top: 12px; width: 100%; max-width: 560px; border-radius: 4px; image-rendering: pixelated; }
@@ -114,8 +114,10 @@ std::string charts_section(const ChartData& data) {
       html += fmt::format("<button data-key=\"{}\" aria-pressed=\"false\">{}</button>\n", metric.key,
                           escaped_html(metric.label));
   html += "</div>\n";
+  html += "<div class=\"wide\">\n";
   for (const MetricInfo& metric : kMetrics)
     if (metric.charted) html += chart_svg(data, metric);
+  html += "</div>\n";
   html +=
       "<p class=\"quiet\">Each dot is a setting: left is quicker, lower is more accurate. On the blue line lie those "
       "that no other "

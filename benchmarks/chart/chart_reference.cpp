@@ -18,6 +18,7 @@ constexpr double kReferenceShare = 0.35;  ///< of the budget that the reference 
 constexpr double kFirstShare = 0.5;       ///< of that: of all pixels alike
 constexpr std::size_t kRounds = 3;        ///< that share the rest
 constexpr int kFinestGrid = 64;           ///< that a render takes
+constexpr float kNegligible = 1e-4f;      ///< expected error of a pixel that is traced anew no more
 constexpr float kEdgeError = 0.2f;        ///< of a grid of one row, per difference of what an edge parts
 constexpr int kFewestGrid = 3, kMostGrid = 24;
 constexpr int kTreeDepths[] = {8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256};
@@ -194,12 +195,12 @@ double TreeDecay::beyond_start() const { return to_ > 0 ? change_ / (1 - std::po
 
 double TreeDecay::beyond_end() const { return beyond_start() * std::pow(decay_, to_ - from_); }
 
-std::vector<std::uint8_t> mask_of_largest(const std::vector<float>& values, std::size_t count) {
+std::vector<std::uint8_t> mask_of_largest(const std::vector<float>& values, std::size_t count, float least) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) { return values[i] > values[k]; });
   std::vector<std::uint8_t> mask(values.size(), 0);
-  for (std::size_t i = 0; i < std::min(count, order.size()) && values[order[i]] > 0; ++i) mask[order[i]] = 1;
+  for (std::size_t i = 0; i < std::min(count, order.size()) && values[order[i]] > least; ++i) mask[order[i]] = 1;
   return mask;
 }
 
@@ -277,7 +278,7 @@ std::optional<ChartReference> make_reference(const ReferencePlan& plan, const Ch
   ChartReference reference;
   for (std::size_t round = 0; round <= plan.refined.size(); ++round) {
     std::vector<std::uint8_t> mask;
-    if (round > 0) mask = mask_of_largest(expected_errors(first, last, rows), plan.refined[round - 1]);
+    if (round > 0) mask = mask_of_largest(expected_errors(first, last, rows), plan.refined[round - 1], kNegligible);
     if (round > 0 && std::find(mask.begin(), mask.end(), 1) == mask.end()) break;
     const int grid = grid_of_round(plan.grid, round);
     Warnings same;

@@ -58,8 +58,8 @@ inline int grid_of_round(int grid, std::size_t round) { return ((grid + 1) << ro
 /// pixels around differ, as the error of a grid's samples on an edge between those goes: by rows^-1.5.
 std::vector<float> expected_errors(const Film& a, const Film& b, const std::vector<int>& rows);
 
-/// 1 for the `count` largest, those of the earliest places among equals; 0 for others, and where the value is 0.
-std::vector<std::uint8_t> mask_of_largest(const std::vector<float>& values, std::size_t count);
+/// 1 for the `count` largest that are above `least`, those of the earliest places among equals; 0 for others.
+std::vector<std::uint8_t> mask_of_largest(const std::vector<float>& values, std::size_t count, float least);
 
 /// Judges by rays counted in small pictures. None: stopped.
 std::optional<ReferencePlan> plan_reference(const ChartSceneMaker& make, const SceneTraits& traits, int width,

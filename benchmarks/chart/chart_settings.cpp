@@ -55,7 +55,7 @@ std::vector<Knob> knobs_of(const SceneTraits& traits, int reference_grid) {
   knobs.push_back(flag_knob("levels", "--levels", {"0", "1", "2", "3", "4", "5"}, adaptive));
   knobs.push_back(flag_knob("minimum level", "--minimum-level", {"0", "1", "2"}, adaptive));
   if (traits.branches) {
-    knobs.push_back(flag_knob("depth", "--depth", {"1", "2", "3", "4", "6", "8", "12", "16"}));
+    knobs.push_back(flag_knob("depth", "--depth", {"1", "2", "3", "4", "6", "8", "12", "16", "32", "64"}));
     knobs.push_back(
         flag_knob("cutoff", "--cutoff", {"0.1", "0.03", "0.01", "0.00392157", "0.00098039", "0.0001", "0"}));
   }

@@ -102,6 +102,12 @@ TEST_F(ChartPage, AClickShowsTheCommandOfThePoint) {
     clicked = Number(point.dataset.point);
     break;
   }
+  const shown = () => document.getElementById("command").textContent;
+  const other = [...svg.querySelectorAll("circle.point")].find(e => Number(e.dataset.point) !== clicked);
+  other.dispatchEvent(new MouseEvent("mouseenter"));
+  const hovered = { point: Number(other.dataset.point), command: shown() };
+  other.dispatchEvent(new MouseEvent("mouseleave"));
+  hovered.after = shown();
   const column = [...document.querySelectorAll("#table th")].findIndex(e => e.textContent === "RMSE");
   const rows = () => [...document.querySelectorAll("#table tbody tr")].map(r => Number(r.cells[column].dataset.value));
   document.querySelectorAll("#table th")[column].click();
@@ -109,13 +115,18 @@ TEST_F(ChartPage, AClickShowsTheCommandOfThePoint) {
   await pause();
   const canvas = document.getElementById("canvas-a");
   const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
-  return { clicked, command: document.getElementById("command").textContent, rows: rows().length, sorted,
+  document.querySelectorAll("#table th")[column].click();
+  const turned = rows().every((v, i, all) => i === 0 || all[i - 1] >= v);
+  return { clicked, hovered, turned, command: document.getElementById("command").textContent, rows: rows().length, sorted,
     a: document.getElementById("picture-a").value, drawn: data.some((v, i) => i % 4 !== 3 && v > 0),
     map: document.getElementById("map-words").textContent };
 )JS");
   ASSERT_GT(result["clicked"], 0) << result;
   const Json& point = chart_["points"][result["clicked"].get<std::size_t>()];
   EXPECT_EQ(result["command"], point["command"]);
+  EXPECT_EQ(result["hovered"]["command"], chart_["points"][result["hovered"]["point"].get<std::size_t>()]["command"]);
+  EXPECT_EQ(result["hovered"]["after"], point["command"]) << "the chosen one's again";
+  EXPECT_EQ(result["turned"], true) << "by falling RMSE after a second click";
   EXPECT_EQ(result["a"], std::to_string(result["clicked"].get<int>())) << "its picture is the one looked at";
   EXPECT_EQ(result["rows"], chart_["points"].size());
   EXPECT_EQ(result["sorted"], true) << "by RMSE after a click on the column's head";

@@ -52,6 +52,18 @@ TEST(ChartCommand, WritesEverythingAndErrorsRepeatToTheLastBit) {
   for (const char* knob : {"--rough-samples", "--cutoff", "--tolerance"}) EXPECT_FALSE(contains(flags, knob)) << knob;
 }
 
+// Patches, glass and rough surfaces, whose samples are drawn.
+TEST(ChartCommand, ErrorsRepeatWhateverTheSceneHas) {
+  const TemporaryFolder folder;
+  for (const std::string scene : {"teapot", "glass", "rough"}) {
+    ASSERT_EQ(run_program(small_chart(folder, scene, scene + "1")).status, 0);
+    ASSERT_EQ(run_program(with(small_chart(folder, scene, scene + "2"), {"--threads", "1"})).status, 0);
+    const Json a = chart_in(folder, scene + "1"), b = chart_in(folder, scene + "2");
+    EXPECT_EQ(a["reference"]["own_error"], b["reference"]["own_error"]) << scene;
+    EXPECT_EQ(a["points"][0]["errors"].dump(), b["points"][0]["errors"].dump()) << scene;
+  }
+}
+
 TEST(ChartBudget, AnyHoldsTheSceneAsItIs) {
   const TemporaryFolder folder;
   const ProgramResult result =
@@ -128,7 +140,7 @@ TEST(ChartCommand, AnInterruptionKeepsWhatIsDone) {
   options.signal = SIGINT;
   options.signal_after = 2;
   const ProgramResult result = run_program(
-      {"chart", "cone", "-o", folder.path("chart"), "--size", "120x80", "--budget", "40s", "--threads", "1"}, options);
+      {"chart", "cone", "-o", folder.path("chart"), "--size", "36x24", "--budget", "20s", "--threads", "1"}, options);
   EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
   EXPECT_LT(result.seconds_after_signal, 1.0);
   const Json chart = chart_in(folder, "chart");
@@ -176,10 +188,14 @@ TEST(ChartInput, RefusesWhatItCannotDo) {
   wrong({"--also", "--shading gourad"}, {"--shading", "did you mean gouraud"});
   wrong({"--also", "--sieze 3"}, {"unknown flag --sieze"});
   wrong({"--also", "--help"}, {"help is no setting"});
+  for (const std::string word : {"--size 3x3", "--size=3x3", "-o a.png", "--camera main", "--threads 2"})
+    wrong({"--also", word}, {"--also", word.substr(0, word.find_first_of(" =")), "alike for all of a chart"});
   wrong({"--also", "--set 'a"}, {"quote"});
   wrong({"--threads", "0"}, {"--threads"});
   EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
   std::filesystem::create_directory(out);
+  write_text(out + "/chart.json", R"({"raytree_chart": 2, "points": []})");
+  wrong({}, {"chart.json", "another version", "2", "--fresh"});
   write_text(out + "/chart.json", "[]");
   wrong({"--budget", "1s"}, {"chart.json", "is no chart"});
 }

@@ -51,10 +51,11 @@ TEST(ChartFront, KeepsOffWhatIsDominatedNotFiniteOrDoesNotRepeat) {
 TEST(ChartFindings, HalvingCostsWhatAPowerLawSays) {
   std::vector<CostAndError> front;
   for (int i = 0; i < 6; ++i) front.push_back({0.01 * std::pow(1.9, i), std::pow(0.5, i)});
-  EXPECT_NEAR(cost_of_halving(front, 0).value(), 1.9, 1e-9);
+  EXPECT_NEAR(cost_of_halving(front, 0).value().factor, 1.9, 1e-9);
   // Points below the floor say nothing.
   front.push_back({1000, 1e-6});
-  EXPECT_NEAR(cost_of_halving(front, 1e-3).value(), 1.9, 1e-9);
+  EXPECT_NEAR(cost_of_halving(front, 1e-3).value().factor, 1.9, 1e-9);
+  EXPECT_LT(cost_of_halving(front, 1e-3).value().settings, cost_of_halving(front, 0).value().settings);
   EXPECT_FALSE(cost_of_halving({{1, 1}, {2, 0.5}}, 0));
 }
 

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
 #include <set>
 
 namespace raytree::benchmarks {
@@ -26,6 +29,45 @@ TEST(ChartSettings, LeaveOutTheReferencesOwnSamples) {
     EXPECT_EQ(grids.count(reference + 1), 0u) << reference;
     EXPECT_GE(grids.size(), 4u) << reference;
   }
+}
+
+// The knobs, with their ends, and no other; docs/chart.md has a row for each.
+TEST(ChartSettings, TurnEveryKnobOfASceneThatHasAUseForAll) {
+  SceneTraits traits;
+  traits.branches = traits.rough = traits.curved = traits.facets = traits.triangles = true;
+  traits.sided_shapes = {"cone"};
+  traits.curved = true;
+  std::map<std::string, std::set<std::string>> knobs;
+  for (const ChartSetting& setting : sweep_of(traits, {}, 20))
+    if (setting.part == SweepPart::ends || setting.part == SweepPart::between)
+      knobs[setting.knob].insert(setting.value);
+  const std::map<std::string, std::vector<std::string>> expected = {
+      {"antialias", {"none", "whitted", "grid:2", "grid:8"}},
+      {"threshold", {"0.5", "0"}},
+      {"levels", {"0", "5"}},
+      {"minimum level", {"0", "2"}},
+      {"depth", {"1", "64"}},
+      {"cutoff", {"0.1", "0"}},
+      {"rough samples", {"1", "64"}},
+      {"tolerance", {"8", "0.125"}},
+      {"sides", {"8", "exact"}},
+      {"shading", {"flat", "gouraud", "phong", "limit"}},
+      {"terminator", {"classic", "offset"}},
+      {"reflections", {"classic", "clamped", "consistent"}},
+      {"hierarchy", {"quick", "balanced", "quads", "compact", "compact-quads"}},
+      {"edges", {"fast", "watertight"}},
+      {"tracer", {"embree", "spheres"}}};
+  std::ifstream file(RAYTREE_SOURCE_DIR "/docs/chart.md");
+  const std::string document{std::istreambuf_iterator<char>(file), {}};
+  for (const auto& [knob, values] : expected) {
+    for (const std::string& value : values) EXPECT_EQ(knobs[knob].count(value), 1u) << knob << " " << value;
+    EXPECT_NE(document.find(knob == "terminator"    ? "| terminator, reflections |"
+                            : knob == "reflections" ? "reflections |"
+                                                    : "| " + knob + " |"),
+              std::string::npos)
+        << knob;
+  }
+  EXPECT_EQ(knobs.size(), expected.size());
 }
 
 TEST(ChartSettings, BeginWithTheScenesOwnThenWhatIsAddedAndTheEndsOfKnobs) {
