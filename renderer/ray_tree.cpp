@@ -64,7 +64,7 @@ bool SampleTracer::State::trace(std::span<const Vec2f> positions, float spacing)
 
 void SampleTracer::State::trace_batch(Coherence coherence, bool eye) {
   const auto start = Clock::now();
-  batch.copy_to(rays);
+  rays.size = batch.size;
   scene.intersector->intersect(rays, coherence, hits);
   const auto hit = Clock::now();
   const double intersection_before = statistics.intersection_seconds;
