@@ -60,6 +60,7 @@ struct Material {
 
   bool is_plain = true;    ///< of a prepared scene: neither varied, its ambient neither, nor takes_on_the_way
   bool is_varied = false;  ///< diffuse varies or there is a bump: vary() has something to do
+  bool in_cells = false;   ///< of a prepared scene: the diffuse pattern is all that varies, and may be asked for cells
   /// Diffuse, ambient or bump lies in the own space of the shape that is hit; of a prepared scene: and some shape's is
   /// not the world.
   bool follows_objects = false;
