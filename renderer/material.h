@@ -28,13 +28,14 @@ struct HighlightTable {
 };
 
 struct Material {
-  Pattern diffuse;     ///< k_d
-  Pattern ambient;     ///< share of the ambient light
-  Rgb highlight;       ///< W; of a table, the largest
-  float exponent = 1;  ///< n
-  Rgb reflection;      ///< k_s
-  Rgb transmission;    ///< k_t
-  float index = 1;     ///< of the inside over the outside
+  Pattern diffuse;            ///< k_d
+  Pattern ambient;            ///< share of the ambient light
+  Rgb highlight;              ///< W; of a table, the largest
+  float exponent = 1;         ///< n
+  float least_highlight = 0;  ///< a cosine whose n-th power, as that of any below it, is 0 in single precision
+  Rgb reflection;             ///< k_s
+  Rgb transmission;           ///< k_t
+  float index = 1;            ///< of the inside over the outside
   float inverse_index = 1;
   bool has_diffuse = false, has_highlight = false, has_reflection = false, has_transmission = false;
   bool ambient_as_diffuse = true;  ///< the ambient pattern is the diffuse one

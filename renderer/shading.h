@@ -147,7 +147,10 @@ inline LocalLight local_light(const LightMeeting& meeting, const Material& mater
     const Rgb weight = kFeatures.tabled_highlights && material.tabled_highlight
                            ? material.highlight_table.at(meeting.cosine)
                            : material.highlight;
-    result.highlight = color * weight * std::pow(std::min(meeting.highlight, 1.0f), material.exponent);
+    const float power = meeting.highlight > material.least_highlight
+                            ? std::pow(std::min(meeting.highlight, 1.0f), material.exponent)
+                            : 0.0f;
+    result.highlight = color * weight * power;
   }
   return result;
 }
