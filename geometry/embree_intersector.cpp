@@ -156,6 +156,24 @@ void occluded_packets(RTCScene scene, const embree::SceneBounds& bounds, const R
   }
 }
 
+/// Where Embree found nothing nearer, what the few shapes have: a hit, or none. Embree has set the instances.
+void take_where_missed(const FewHits& few, std::size_t count, HitBatch& hits) noexcept {
+  // Pointers that nothing else writes to, so that the loop is vectorized.
+  GeometryId* __restrict geometries = hits.geometry;
+  std::uint32_t* __restrict primitives = hits.primitive;
+  float* __restrict u = hits.u, * __restrict v = hits.v;
+  const GeometryId* few_geometries = few.geometry.data();
+  const std::uint32_t* few_primitives = few.primitive.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool missed = geometries[i] == kNoGeometry;
+    geometries[i] = missed ? few_geometries[i] : geometries[i];
+    primitives[i] = missed ? few_primitives[i] : primitives[i];
+    u[i] = missed ? 0.0f : u[i];
+    v[i] = missed ? 0.0f : v[i];
+  }
+  // Distances are right already: Embree's rays end where the few shapes are met.
+}
+
 RTCBuildQuality embree_quality(EmbreeOptions::Quality quality) {
   if (quality == EmbreeOptions::Quality::low) return RTC_BUILD_QUALITY_LOW;
   return quality == EmbreeOptions::Quality::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
@@ -377,9 +395,7 @@ void EmbreeIntersector::intersect(const RayBatch& rays, Coherence coherence, Hit
   thread_local FewHits few;
   intersect_few(state_->few, rays, few);
   nearest_bounded(rays, coherence, few.distance.data(), hits);
-  for (std::size_t i = 0; i < rays.size; ++i)
-    if (hits.geometry[i] == kNoGeometry && few.geometry[i] != kNoGeometry)
-      hits.set(i, {few.geometry[i], few.primitive[i], 0, 0, few.distance[i]});
+  take_where_missed(few, rays.size, hits);
 }
 
 void EmbreeIntersector::occluded(const RayBatch& rays, Coherence coherence, std::uint8_t* occluded) const noexcept {
