@@ -38,7 +38,8 @@ struct Checker {
     const PlaneVector reach{std::abs(edge.a) + std::abs(other.a), std::abs(edge.b) + std::abs(other.b)};
     const bool is_point = ((reach.a == 0) & (reach.b == 0)) | (footprint.leaves_edges & (reach.a < 1) & (reach.b < 1));
     const double sign = square_wave(center.a) * square_wave(center.b);
-    return is_point | fits_cell(center, reach) ? sign : 0.0;
+    const bool fits = fits_cell(center, reach);
+    return (is_point | fits) ? sign : 0.0;
   }
 
  private:

@@ -32,7 +32,8 @@ inline bool fits_cell(const PlaneVector& center, const PlaneVector& reach) {
     const double below = inside - width * 0.5, above = 1 - (inside + width * 0.5);
     return below < above ? below : above;
   };
-  return (room(center.a, reach.a) >= 0) & (room(center.b, reach.b) >= 0);
+  const double room_a = room(center.a, reach.a), room_b = room(center.b, reach.b);
+  return (room_a >= 0) & (room_b >= 0);
 }
 
 /// Mean of square_wave(a) square_wave(b) over the parallelogram about `center` with these edges, exact (Green's theorem
