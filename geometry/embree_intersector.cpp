@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "geometry/embree_cones.h"
@@ -9,6 +10,7 @@
 #include "geometry/embree_state.h"
 #include "geometry/error.h"
 #include "geometry/few_shapes.h"
+#include "geometry/lanes.h"
 
 namespace raytree {
 namespace {
@@ -105,6 +107,14 @@ bool runs_alike(const Ray& ray) {
 /// Embree's id of the instance that was hit, as an index into ShapeSet::instances.
 inline InstanceId instance_of(unsigned int embree_id, GeometryId first_instance) {
   return embree_id == RTC_INVALID_GEOMETRY_ID ? kNoInstance : embree_id - first_instance;
+}
+
+/// The list that names the triangles of what was hit; null: it is no quad, or nothing.
+inline const QuadList* quads_at(const std::vector<std::vector<QuadList>>& quads, const ShapeSet& shapes,
+                                GeometryId geometry, InstanceId instance) {
+  if (geometry < kFirstMeshGeometry || geometry == kNoGeometry) return nullptr;
+  const std::size_t space = instance == kNoInstance ? 0 : 1 + shapes.instances[instance].group;
+  return &quads[space][geometry - kFirstMeshGeometry];
 }
 
 /// `Instanced`: the scene has instances, the first of them of Embree's id `first_instance`.
@@ -363,14 +373,36 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
 EmbreeIntersector::~EmbreeIntersector() = default;
 
 void EmbreeIntersector::name_triangles(std::size_t count, HitBatch& hits) const noexcept {
-  for (std::size_t i = 0; i < count; ++i) {
-    const GeometryId geometry = hits.geometry[i];
-    if (geometry < kFirstMeshGeometry || geometry == kNoGeometry) continue;
-    const InstanceId instance = hits.instance[i];
-    const std::size_t space = instance == kNoInstance ? 0 : 1 + state_->shapes->instances[instance].group;
-    const TrianglePoint point =
-        triangle_point(state_->quads[space][geometry - kFirstMeshGeometry], hits.primitive[i], hits.u[i], hits.v[i]);
-    hits.primitive[i] = point.triangle, hits.u[i] = point.u, hits.v[i] = point.v;
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    IntegerLaneVector triangle = {}, halves = {}, is_quad = {}, primitive;
+    const auto look_up = [&](std::size_t lane, const QuadList& list) {
+      const std::uint32_t quad = hits.primitive[first + lane];
+      is_quad[lane] = 1, triangle[lane] = list.first[quad], halves[lane] = list.halves[quad].bits();
+    };
+    const GeometryId* const geometry = hits.geometry + first;
+    if (!state_->instanced && first + kLanes <= count && std::equal(geometry + 1, geometry + kLanes, geometry)) {
+      // Neighbors mostly hit one mesh, or nothing.
+      const QuadList* const list = quads_at(state_->quads, *state_->shapes, *geometry, kNoInstance);
+      if (list == nullptr) continue;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) look_up(lane, *list);
+    } else {
+      for (std::size_t lane = 0; lane < std::min(kLanes, count - first); ++lane)
+        if (const QuadList* const list =
+                quads_at(state_->quads, *state_->shapes, geometry[lane], hits.instance[first + lane]))
+          look_up(lane, *list);
+    }
+    LaneVector u, v;
+    std::memcpy(&primitive, hits.primitive + first, sizeof(primitive));
+    std::memcpy(&u, hits.u + first, sizeof(u));
+    std::memcpy(&v, hits.v + first, sizeof(v));
+    LaneVector u_there = u, v_there = v;
+    find_triangle_point(halves, triangle, u_there, v_there);
+    primitive = is_quad != 0 ? triangle : primitive;
+    u = is_quad != 0 ? u_there : u;
+    v = is_quad != 0 ? v_there : v;
+    std::memcpy(hits.primitive + first, &primitive, sizeof(primitive));
+    std::memcpy(hits.u + first, &u, sizeof(u));
+    std::memcpy(hits.v + first, &v, sizeof(v));
   }
 }
 
