@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "geometry/embree_cones.h"
@@ -9,6 +10,7 @@
 #include "geometry/embree_state.h"
 #include "geometry/error.h"
 #include "geometry/few_shapes.h"
+#include "geometry/lanes.h"
 
 namespace raytree {
 namespace {
@@ -107,6 +109,14 @@ inline InstanceId instance_of(unsigned int embree_id, GeometryId first_instance)
   return embree_id == RTC_INVALID_GEOMETRY_ID ? kNoInstance : embree_id - first_instance;
 }
 
+/// The list that names the triangles of what was hit; null: it is no quad, or nothing.
+inline const QuadList* quads_at(const std::vector<std::vector<QuadList>>& quads, const ShapeSet& shapes,
+                                GeometryId geometry, InstanceId instance) {
+  if (geometry < kFirstMeshGeometry || geometry == kNoGeometry) return nullptr;
+  const std::size_t space = instance == kNoInstance ? 0 : 1 + shapes.instances[instance].group;
+  return &quads[space][geometry - kFirstMeshGeometry];
+}
+
 /// `Instanced`: the scene has instances, the first of them of Embree's id `first_instance`.
 template <int Width, bool Instanced>
 void intersect_packets(RTCScene scene, const embree::SceneBounds& bounds, const RayBatch& rays, Coherence coherence,
@@ -154,6 +164,24 @@ void occluded_packets(RTCScene scene, const embree::SceneBounds& bounds, const R
     // Embree marks an occluded ray by tfar = -infinity; a lane that was not live counts as open.
     for (int i = 0; i < Width; ++i) occluded[first + i] = (packet.tfar[i] < 0) & (valid[i] != 0);
   }
+}
+
+/// Where Embree found nothing nearer, what the few shapes have: a hit, or none. Embree has set the instances.
+void take_where_missed(const FewHits& few, std::size_t count, HitBatch& hits) noexcept {
+  // Pointers that nothing else writes to, so that the loop is vectorized.
+  GeometryId* __restrict geometries = hits.geometry;
+  std::uint32_t* __restrict primitives = hits.primitive;
+  float* __restrict u = hits.u, * __restrict v = hits.v;
+  const GeometryId* few_geometries = few.geometry.data();
+  const std::uint32_t* few_primitives = few.primitive.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool missed = geometries[i] == kNoGeometry;
+    geometries[i] = missed ? few_geometries[i] : geometries[i];
+    primitives[i] = missed ? few_primitives[i] : primitives[i];
+    u[i] = missed ? 0.0f : u[i];
+    v[i] = missed ? 0.0f : v[i];
+  }
+  // Distances are right already: Embree's rays end where the few shapes are met.
 }
 
 RTCBuildQuality embree_quality(EmbreeOptions::Quality quality) {
@@ -345,14 +373,36 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
 EmbreeIntersector::~EmbreeIntersector() = default;
 
 void EmbreeIntersector::name_triangles(std::size_t count, HitBatch& hits) const noexcept {
-  for (std::size_t i = 0; i < count; ++i) {
-    const GeometryId geometry = hits.geometry[i];
-    if (geometry < kFirstMeshGeometry || geometry == kNoGeometry) continue;
-    const InstanceId instance = hits.instance[i];
-    const std::size_t space = instance == kNoInstance ? 0 : 1 + state_->shapes->instances[instance].group;
-    const TrianglePoint point =
-        triangle_point(state_->quads[space][geometry - kFirstMeshGeometry], hits.primitive[i], hits.u[i], hits.v[i]);
-    hits.primitive[i] = point.triangle, hits.u[i] = point.u, hits.v[i] = point.v;
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    IntegerLaneVector triangle = {}, halves = {}, is_quad = {}, primitive;
+    const auto look_up = [&](std::size_t lane, const QuadList& list) {
+      const std::uint32_t quad = hits.primitive[first + lane];
+      is_quad[lane] = 1, triangle[lane] = list.first[quad], halves[lane] = list.halves[quad].bits();
+    };
+    const GeometryId* const geometry = hits.geometry + first;
+    if (!state_->instanced && first + kLanes <= count && std::equal(geometry + 1, geometry + kLanes, geometry)) {
+      // Neighbors mostly hit one mesh, or nothing.
+      const QuadList* const list = quads_at(state_->quads, *state_->shapes, *geometry, kNoInstance);
+      if (list == nullptr) continue;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) look_up(lane, *list);
+    } else {
+      for (std::size_t lane = 0; lane < std::min(kLanes, count - first); ++lane)
+        if (const QuadList* const list =
+                quads_at(state_->quads, *state_->shapes, geometry[lane], hits.instance[first + lane]))
+          look_up(lane, *list);
+    }
+    LaneVector u, v;
+    std::memcpy(&primitive, hits.primitive + first, sizeof(primitive));
+    std::memcpy(&u, hits.u + first, sizeof(u));
+    std::memcpy(&v, hits.v + first, sizeof(v));
+    LaneVector u_there = u, v_there = v;
+    find_triangle_point(halves, triangle, u_there, v_there);
+    primitive = is_quad != 0 ? triangle : primitive;
+    u = is_quad != 0 ? u_there : u;
+    v = is_quad != 0 ? v_there : v;
+    std::memcpy(hits.primitive + first, &primitive, sizeof(primitive));
+    std::memcpy(hits.u + first, &u, sizeof(u));
+    std::memcpy(hits.v + first, &v, sizeof(v));
   }
 }
 
@@ -377,9 +427,7 @@ void EmbreeIntersector::intersect(const RayBatch& rays, Coherence coherence, Hit
   thread_local FewHits few;
   intersect_few(state_->few, rays, few);
   nearest_bounded(rays, coherence, few.distance.data(), hits);
-  for (std::size_t i = 0; i < rays.size; ++i)
-    if (hits.geometry[i] == kNoGeometry && few.geometry[i] != kNoGeometry)
-      hits.set(i, {few.geometry[i], few.primitive[i], 0, 0, few.distance[i]});
+  take_where_missed(few, rays.size, hits);
 }
 
 void EmbreeIntersector::occluded(const RayBatch& rays, Coherence coherence, std::uint8_t* occluded) const noexcept {

@@ -19,8 +19,12 @@ constexpr float kBallSlack = 0x1p-19f;
 typedef float BlockOfFloats __attribute__((vector_size(kBlockRays * sizeof(float)), aligned(sizeof(float)), may_alias));
 typedef std::int32_t BlockOfFlags __attribute__((vector_size(kBlockRays * sizeof(std::int32_t))));
 typedef std::int64_t BlockOfFlagPairs __attribute__((vector_size(kBlockRays * sizeof(std::int32_t))));
+typedef std::uint32_t BlockOfIds
+    __attribute__((vector_size(kBlockRays * sizeof(float)), aligned(sizeof(float)), may_alias));
 
 inline const BlockOfFloats& block(const float* values) { return *reinterpret_cast<const BlockOfFloats*>(values); }
+inline BlockOfFloats& block(float* values) { return *reinterpret_cast<BlockOfFloats*>(values); }
+inline BlockOfIds& block(std::uint32_t* values) { return *reinterpret_cast<BlockOfIds*>(values); }
 
 /// Whether any of the block's rays may meet the ball; never false for a ray that does, whatever its range. What lies in
 /// the padding counts too, which costs time and nothing else.
@@ -66,6 +70,20 @@ void for_each(const FewShapes& few, Visit&& visit) {
           &shapes.discs.center_radius[d]);
 }
 
+/// Notes the shape for those rays of a block that it is nearer to than what was found before; a distance below 0 is
+/// none.
+inline void keep_nearer(GeometryId geometry, std::uint32_t primitive, const float (&distances)[kBlockRays],
+                        std::size_t first, FewHits& hits) {
+  const BlockOfFloats distance = block(distances);
+  BlockOfFloats& nearest = block(hits.distance.data() + first);
+  BlockOfIds& geometries = block(hits.geometry.data() + first);
+  BlockOfIds& primitives = block(hits.primitive.data() + first);
+  const BlockOfFlags nearer = (distance >= 0) & (distance < nearest);
+  nearest = nearer ? distance : nearest;
+  geometries = nearer ? geometry - BlockOfIds{} : geometries;
+  primitives = nearer ? primitive - BlockOfIds{} : primitives;
+}
+
 }  // namespace
 
 void intersect_few(const FewShapes& few, const RayBatch& rays, FewHits& hits) noexcept {
@@ -77,24 +95,15 @@ void intersect_few(const FewShapes& few, const RayBatch& rays, FewHits& hits) no
   }
   std::fill_n(hits.geometry.begin(), rays.size, kNoGeometry);
   std::copy_n(rays.max_distance, rays.size, hits.distance.begin());
-  // Pointers that nothing else writes to, so that the loop over rays is vectorized.
-  GeometryId* __restrict geometries = hits.geometry.data();
-  std::uint32_t* __restrict primitives = hits.primitive.data();
-  float* __restrict distances = hits.distance.data();
-  const std::size_t count = rays.size;
   for_each(few, [&](GeometryId geometry, std::uint32_t primitive, auto&& distance_to, const Imath::V4f* ball) {
-    const auto test = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const float distance = distance_to(rays.origin(i), rays.direction(i));
-        const bool nearer = (distance >= 0) & (distance < distances[i]);
-        distances[i] = nearer ? distance : distances[i];
-        geometries[i] = nearer ? geometry : geometries[i];
-        primitives[i] = nearer ? primitive : primitives[i];
-      }
-    };
-    if (!ball) return test(0, count);
-    for (std::size_t begin = 0; begin < count; begin += kBlockRays)
-      if (may_meet(*ball, rays, begin)) test(begin, std::min(begin + kBlockRays, count));
+    for (std::size_t first = 0; first < rays.size; first += kBlockRays) {
+      if (ball && !may_meet(*ball, rays, first)) continue;
+      // Distances first, then what is nearer: in one loop, g++ 12 would turn masks of doubles into masks of floats.
+      float distances[kBlockRays];
+      for (std::size_t i = 0; i < kBlockRays; ++i)
+        distances[i] = distance_to(rays.origin(first + i), rays.direction(first + i));
+      keep_nearer(geometry, primitive, distances, first, hits);
+    }
   });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "geometry/ray_batch.h"
@@ -15,6 +16,11 @@ inline constexpr std::size_t kLanes = 8;
 static_assert(kBatchPadding % kLanes == 0, "the last block of a batch reaches into the padding");
 
 using Lanes = float[kLanes];
+
+/// The same as one vector, for what g++ 12 does not vectorize of itself. Passed by reference: without AVX, what a
+/// register does not hold has no settled way of being passed by value.
+typedef float LaneVector __attribute__((vector_size(kLanes * sizeof(float))));
+typedef std::uint32_t IntegerLaneVector __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
 
 struct Vec3Lanes {
   Lanes x, y, z;

@@ -19,9 +19,8 @@ class QuadHalves {
   QuadHalves(unsigned behind, unsigned first_turn, unsigned second_turn)
       : bits_(static_cast<std::uint8_t>(behind | first_turn << 3 | second_turn << 5)) {}
 
-  unsigned behind() const { return bits_ & 7u; }
-  unsigned first_turn() const { return bits_ >> 3 & 3u; }
-  unsigned second_turn() const { return bits_ >> 5 & 3u; }
+  /// As they were given, from the lowest bit on: `behind` in three bits, the turns in two each.
+  std::uint32_t bits() const { return bits_; }
 
  private:
   std::uint8_t bits_ = 0;
@@ -54,15 +53,27 @@ struct TrianglePoint {
 };
 
 /// The point of a quad that Embree calls (u, v), on the triangle that the quad has there: corners 0, 1 and 3 weigh
-/// 1 - u - v, u and v where that is not negative, else corners 2, 3 and 1 weigh u + v - 1, 1 - u and 1 - v.
-inline TrianglePoint triangle_point(const QuadList& quads, std::uint32_t quad, float u, float v) {
-  const QuadHalves halves = quads.halves[quad];
-  const float rest = (1 - u) - v;
-  const bool second = rest < 0;
-  const float weights[3] = {second ? -rest : rest, second ? 1 - u : u, second ? 1 - v : v};
-  const unsigned turn = second ? halves.second_turn() : halves.first_turn();
+/// 1 - u - v, u and v where that is not negative, else corners 2, 3 and 1 weigh u + v - 1, 1 - u and 1 - v. `triangle`:
+/// the quad's first, on return the one there; `halves`: QuadHalves::bits(). Of one point, or of as many as vectors have
+/// elements: g++ 12 does not vectorize a loop over it.
+template <class Integers, class Reals>
+inline void find_triangle_point(const Integers& halves, Integers& triangle, Reals& u, Reals& v) {
+  const Reals rest = (1 - u) - v;
+  const auto second = rest < 0;
+  const Reals weight_0 = second ? -rest : rest, weight_1 = second ? 1 - u : u, weight_2 = second ? 1 - v : v;
+  const Integers turn = second ? halves >> 5 & 3u : halves >> 3 & 3u;
   // Corner (turn + i) mod 3 of the triangle has weight i.
-  return {quads.first[quad] + (second ? halves.behind() : 0), weights[(4 - turn) % 3], weights[(5 - turn) % 3]};
+  const auto unturned = turn == 0u, once = turn == 1u;
+  triangle += second ? halves & 7u : halves & 0u;
+  u = unturned ? weight_1 : (once ? weight_0 : weight_2);
+  v = unturned ? weight_2 : (once ? weight_1 : weight_0);
+}
+
+/// The same of a point of `quad`.
+inline TrianglePoint triangle_point(const QuadList& quads, std::uint32_t quad, float u, float v) {
+  TrianglePoint point{quads.first[quad], u, v};
+  find_triangle_point(quads.halves[quad].bits(), point.triangle, point.u, point.v);
+  return point;
 }
 
 }  // namespace raytree

@@ -24,6 +24,19 @@ RayBatch::RayBatch(std::size_t capacity)
   }
 }
 
+RayBatch::RayBatch(std::size_t capacity, float* const (&origins)[3], float* const (&directions)[3])
+    : origin_x(origins[0]),
+      origin_y(origins[1]),
+      origin_z(origins[2]),
+      direction_x(directions[0]),
+      direction_y(directions[1]),
+      direction_z(directions[2]),
+      capacity_(capacity),
+      storage_(detail::batch_storage(1, detail::padded_capacity(capacity))) {
+  max_distance = reinterpret_cast<float*>(storage_.get());
+  std::fill_n(max_distance, detail::padded_capacity(capacity), kInfinity);
+}
+
 HitBatch::HitBatch(std::size_t capacity)
     : capacity_(capacity), storage_(detail::batch_storage(6, detail::padded_capacity(capacity))) {
   const std::size_t padded = detail::padded_capacity(capacity);

@@ -37,6 +37,9 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();  ///<
 class RayBatch {
  public:
   explicit RayBatch(std::size_t capacity);
+  /// Up to `capacity` rays that end nowhere, whose origins and directions (x, y, z) are the caller's: arrays as long as
+  /// capacity and the padding, which must outlive it.
+  RayBatch(std::size_t capacity, float* const (&origins)[3], float* const (&directions)[3]);
 
   std::size_t capacity() const { return capacity_; }
 

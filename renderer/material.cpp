@@ -3,12 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/angle.h"
 #include "renderer/bump.h"
 
 namespace raytree {
-namespace {}  // namespace
+namespace {
+
+/// See Material::least_highlight. What is under 2^-150, half of the least float, is 0; a factor of 2 is left for the
+/// rounding of the power.
+float vanishing_cosine(float exponent) {
+  if (!(exponent > 0)) return 0;
+  const double cosine = std::exp2(-151.0 / exponent);
+  const auto rounded = static_cast<float>(cosine);
+  return rounded <= cosine ? rounded : std::nextafter(rounded, 0.0f);
+}
+
+}  // namespace
 
 std::string material_problem(const MaterialDescription& description) {
   if (description.conductor && !is_black(description.transmission))
@@ -39,6 +51,7 @@ Material make_material(const MaterialDescription& description, bool fresnel, con
     }
   }
   material.exponent = static_cast<float>(description.highlight.exponent);
+  material.least_highlight = vanishing_cosine(material.exponent);
   material.reflection = description.reflection;
   material.transmission = description.transmission;
   material.ambient_as_diffuse = !description.ambient.has_value();

@@ -28,13 +28,14 @@ struct HighlightTable {
 };
 
 struct Material {
-  Pattern diffuse;     ///< k_d
-  Pattern ambient;     ///< share of the ambient light
-  Rgb highlight;       ///< W; of a table, the largest
-  float exponent = 1;  ///< n
-  Rgb reflection;      ///< k_s
-  Rgb transmission;    ///< k_t
-  float index = 1;     ///< of the inside over the outside
+  Pattern diffuse;            ///< k_d
+  Pattern ambient;            ///< share of the ambient light
+  Rgb highlight;              ///< W; of a table, the largest
+  float exponent = 1;         ///< n
+  float least_highlight = 0;  ///< a cosine whose n-th power, as that of any below it, is 0 in single precision
+  Rgb reflection;             ///< k_s
+  Rgb transmission;           ///< k_t
+  float index = 1;            ///< of the inside over the outside
   float inverse_index = 1;
   bool has_diffuse = false, has_highlight = false, has_reflection = false, has_transmission = false;
   bool ambient_as_diffuse = true;  ///< the ambient pattern is the diffuse one
@@ -60,6 +61,7 @@ struct Material {
 
   bool is_plain = true;    ///< of a prepared scene: neither varied, its ambient neither, nor takes_on_the_way
   bool is_varied = false;  ///< diffuse varies or there is a bump: vary() has something to do
+  bool in_cells = false;   ///< of a prepared scene: the diffuse pattern is all that varies, and may be asked for cells
   /// Diffuse, ambient or bump lies in the own space of the shape that is hit; of a prepared scene: and some shape's is
   /// not the world.
   bool follows_objects = false;

@@ -27,14 +27,23 @@ struct Checker {
   Coordinate a, b;  ///< in squares
 
   double share(const Vec3d& place, const Footprint& footprint) const {
-    const PlaneVector center{a.at(place), b.at(place)};
-    const PlaneVector edge{a.over(footprint.edge), b.over(footprint.edge)},
-        other{a.over(footprint.other_edge), b.over(footprint.other_edge)};
-    const double reach = std::max(std::abs(edge.a) + std::abs(other.a), std::abs(edge.b) + std::abs(other.b));
-    if (reach == 0 || (footprint.leaves_edges && reach < 1))
-      return 0.5 + 0.5 * square_wave(center.a) * square_wave(center.b);
-    return 0.5 + 0.5 * checker_mean(center, edge, other);
+    if (const double sign = cell(place, footprint); sign != 0) return 0.5 + 0.5 * sign;
+    return 0.5 + 0.5 * checker_mean({a.at(place), b.at(place)}, over(footprint.edge), over(footprint.other_edge));
   }
+
+  /// 1 or -1 where the footprint counts as a point or lies within one cell; else 0. Without branches, so that a loop
+  /// over many samples is vectorized.
+  [[gnu::always_inline]] double cell(const Vec3d& place, const Footprint& footprint) const {
+    const PlaneVector center{a.at(place), b.at(place)}, edge = over(footprint.edge), other = over(footprint.other_edge);
+    const PlaneVector reach{std::abs(edge.a) + std::abs(other.a), std::abs(edge.b) + std::abs(other.b)};
+    const bool is_point = ((reach.a == 0) & (reach.b == 0)) | (footprint.leaves_edges & (reach.a < 1) & (reach.b < 1));
+    const double sign = square_wave(center.a) * square_wave(center.b);
+    const bool fits = fits_cell(center, reach);
+    return (is_point | fits) ? sign : 0.0;
+  }
+
+ private:
+  PlaneVector over(const Vec3f& edge) const { return {a.over(edge), b.over(edge)}; }
 };
 
 struct Stripes {
@@ -90,6 +99,23 @@ class VaryingColor {
 };
 
 bool Pattern::follows_object() const { return varies() && !varying->over_texture && varying->origin.follows_object(); }
+
+bool Pattern::has_cells() const {
+  return varies() && !varying->over_texture && std::holds_alternative<Checker>(varying->kind);
+}
+
+void Pattern::find_cells(const SampleLanes& samples, std::int32_t (&cells)[kLanes]) const {
+  // Copies, which nothing that is written can change.
+  const Checker checker = std::get<Checker>(varying->kind);
+  const SolidOrigin origin = varying->origin;
+  static constexpr SampleLanes kPoints = {};
+  const SampleLanes& windows = varying->filtered ? samples : kPoints;
+  double signs[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i)
+    signs[i] = checker.cell(origin.to(samples.position[i], nullptr),
+                            {windows.edge[i], windows.other_edge[i], windows.leaves_edges[i] != 0});
+  for (std::size_t i = 0; i < kLanes; ++i) cells[i] = static_cast<std::int32_t>(signs[i]);
+}
 
 Rgb Pattern::mixed(const SurfacePoint& point, const Footprint& footprint, const ObjectFrame* frame) const {
   const double share = varying->share(point, footprint, frame);

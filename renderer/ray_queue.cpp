@@ -1,6 +1,5 @@
 #include "renderer/ray_queue.h"
 
-#include <limits>
 #include <utility>
 
 namespace raytree {
@@ -18,16 +17,10 @@ void for_each_array(A& a, B& b, Visit&& visit) {
 
 }  // namespace
 
-void RayArrays::copy_to(RayBatch& rays) const {
-  rays.size = size;
-  std::copy_n(origin_x, size, rays.origin_x);
-  std::copy_n(origin_y, size, rays.origin_y);
-  std::copy_n(origin_z, size, rays.origin_z);
-  std::copy_n(direction_x, size, rays.direction_x);
-  std::copy_n(direction_y, size, rays.direction_y);
-  std::copy_n(direction_z, size, rays.direction_z);
-  std::fill_n(rays.max_distance, size, std::numeric_limits<float>::infinity());
+RayBatch RayArrays::as_batch() {
+  RayBatch rays(kBatchSize, {origin_x, origin_y, origin_z}, {direction_x, direction_y, direction_z});
   rays.sample = sample;
+  return rays;
 }
 
 void RayQueue::reserve(std::size_t capacity) {

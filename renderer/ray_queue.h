@@ -49,8 +49,8 @@ struct RayArrays {
   void set_weight(std::size_t i, const Rgb& weight) {
     weight_r[i] = weight.r, weight_g[i] = weight.g, weight_b[i] = weight.b;
   }
-  /// As a tracer takes them; they end nowhere.
-  void copy_to(RayBatch& rays) const;
+  /// These arrays as a tracer takes them: rays that end nowhere. What it lacks is `size`, which goes by each batch.
+  RayBatch as_batch();
 };
 
 /// A stack of any size: the newest rays lie at the end.

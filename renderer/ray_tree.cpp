@@ -64,7 +64,7 @@ bool SampleTracer::State::trace(std::span<const Vec2f> positions, float spacing)
 
 void SampleTracer::State::trace_batch(Coherence coherence, bool eye) {
   const auto start = Clock::now();
-  batch.copy_to(rays);
+  rays.size = batch.size;
   scene.intersector->intersect(rays, coherence, hits);
   const auto hit = Clock::now();
   const double intersection_before = statistics.intersection_seconds;
@@ -169,12 +169,16 @@ bool SampleTracer::State::find_materials() {
 /// What patterns, bumps, absorption and media do to the points. Those that separate nothing are points no longer.
 [[gnu::noinline]] void SampleTracer::State::involve_points(bool eye) {
   const SampleWindow window = eye ? eye_window : SampleWindow();
+  CheckerCells cells(shading, rays, window);
   std::size_t count = 0;
   for (const std::uint32_t i : batch_points()) {
     const Material& material = *shading.materials[i];
     const std::optional<ObjectFrame> moved = scene.frame_at(hits[i], material);
     const ObjectFrame* const frame = moved ? &*moved : nullptr;
-    if (material.is_varied) {
+    const std::int32_t cell = kFeatures.patterns && material.in_cells ? cells.at(i) : 0;
+    if (cell != 0) {
+      shading.set_diffuse(i, cell > 0 ? material.diffuse.even : material.diffuse.odd);
+    } else if (material.is_varied) {
       ShadingPoint point = shading_point(i);
       vary(point, window, frame);
       shading.set_varied(i, point);

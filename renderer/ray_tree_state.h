@@ -36,7 +36,7 @@ struct SampleTracer::State {
         settings(scene_.description.render),
         records(records_),
         stop(stop_),
-        rays(kBatchSize),
+        rays(batch.as_batch()),
         hits(kBatchSize),
         shadow_rays(kBatchSize),
         occluded(kBatchSize + kBatchPadding),
@@ -124,7 +124,8 @@ struct SampleTracer::State {
   RenderStatistics statistics;
   SampleResults results;
 
-  RayBatch rays;
+  RayArrays batch = {};  ///< that is under way
+  RayBatch rays;         ///< the same as tracers take it
   HitBatch hits;
   RayBatch shadow_rays;
   std::vector<std::uint8_t> occluded;
@@ -132,7 +133,6 @@ struct SampleTracer::State {
   std::vector<Rgb> shadow_light;  ///< what a shadow ray brings when nothing is in its way
 
   RayQueue pending;  ///< the newest rays are traced first
-  RayArrays batch;   ///< that is under way: what `rays` is of
   std::vector<std::uint32_t> points;
   std::size_t point_count = 0;
   ShadingBatch shading;

@@ -359,6 +359,8 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
     material.free_reflections = free_reflections;
     material.special_optics |= free_reflections;
     material.takes_on_the_way = material.absorbs || material.one_sided || tracked;
+    material.in_cells =
+        material.diffuse.has_cells() && !material.follows_objects && !(kFeatures.bumps && material.bump != nullptr);
     material.is_plain = !material.is_varied && !material.ambient.varies() && !material.takes_on_the_way;
     material.special_optics |= tracked;
   }

@@ -73,16 +73,8 @@ Branches branches_by_kind(const ShadingPoint& point, float index) {
 
 Footprint footprint_of(const ShadingPoint& point, const SampleWindow& window) {
   if (window.camera == nullptr) return {};
-  const Vec3f& normal = point.surface.geometric_normal;
-  const float cosine = -point.direction.dot(normal);
-  if (!(cosine > 0)) return {};
-  Vec3f right, up;
-  window.camera->pixel_edges(point.direction, point.surface.distance, right, up);
-  // Along the ray until they lie in the plane that touches the surface.
-  const auto laid_down = [&](const Vec3f& edge) {
-    return (edge + point.direction * (edge.dot(normal) / cosine)) * window.spacing;
-  };
-  return {laid_down(right), laid_down(up), window.leaves_edges};
+  return footprint_of(*window.camera, point.direction, point.surface.geometric_normal, point.surface.distance,
+                      window.spacing, window.leaves_edges);
 }
 
 void vary(ShadingPoint& point, const SampleWindow& window, const ObjectFrame* frame) {

@@ -33,7 +33,22 @@ struct SampleWindow {
   bool leaves_edges = false;  ///< see Footprint
 };
 
-/// What the window covers of the plane that touches the surface, normals turned to the ray.
+/// What the window of a ray of unit `direction` covers of the plane that touches the surface at `distance`; `normal`
+/// turned to the ray. Without branches, so that a loop over many points is vectorized.
+[[gnu::always_inline]] inline Footprint footprint_of(const Camera& camera, const Vec3f& direction, const Vec3f& normal,
+                                                     float distance, float spacing, bool leaves_edges) {
+  const float cosine = -direction.dot(normal);
+  Vec3f right, up;
+  camera.pixel_edges(direction, distance, right, up);
+  const bool faces = cosine > 0;
+  // Along the ray until they lie in the plane that touches the surface.
+  const auto laid_down = [&](const Vec3f& edge) {
+    const Vec3f laid = (edge + direction * (edge.dot(normal) / cosine)) * spacing;
+    return Vec3f(faces ? laid.x : 0.0f, faces ? laid.y : 0.0f, faces ? laid.z : 0.0f);
+  };
+  return {laid_down(right), laid_down(up), faces && leaves_edges};
+}
+/// The same of a point; a mere point where the window has no camera.
 Footprint footprint_of(const ShadingPoint& point, const SampleWindow& window);
 
 // `frame`: of the shape that was hit, Scene::frame_at(); null where it has none or its material follows no object.
@@ -132,7 +147,10 @@ inline LocalLight local_light(const LightMeeting& meeting, const Material& mater
     const Rgb weight = kFeatures.tabled_highlights && material.tabled_highlight
                            ? material.highlight_table.at(meeting.cosine)
                            : material.highlight;
-    result.highlight = color * weight * std::pow(std::min(meeting.highlight, 1.0f), material.exponent);
+    const float power = meeting.highlight > material.least_highlight
+                            ? std::pow(std::min(meeting.highlight, 1.0f), material.exponent)
+                            : 0.0f;
+    result.highlight = color * weight * power;
   }
   return result;
 }

@@ -51,6 +51,25 @@ void ShadingBatch::set_varied(std::size_t i, const ShadingPoint& point) {
   surfaces.shading_normal.set(i, point.surface.shading_normal);
 }
 
+SampleLanes ShadingBatch::samples(const RayBatch& rays, const SampleWindow& window, std::size_t first) const {
+  const ConstVec3Lanes direction = directions_of(rays, first), facet = block_of(surfaces.geometric_normal, first),
+                       position = block_of(surfaces.position, first);
+  SampleLanes samples = {};
+  for (std::size_t i = 0; i < kLanes; ++i) samples.position.set(i, position[i]);
+  if (window.camera == nullptr) return samples;
+  const Camera camera = *window.camera;  // which nothing that is written can change
+  const float* const distance = surfaces.distance + first;
+  const float spacing = window.spacing;
+  const bool leaves_edges = window.leaves_edges;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const Footprint footprint = footprint_of(camera, direction[i], facet[i], distance[i], spacing, leaves_edges);
+    samples.edge.set(i, footprint.edge);
+    samples.other_edge.set(i, footprint.other_edge);
+    samples.leaves_edges[i] = footprint.leaves_edges;
+  }
+  return samples;
+}
+
 template <HighlightForm form>
 void ShadingBatch::meet_block(const RayBatch& rays, std::size_t first) {
   const ConstVec3Lanes ray = directions_of(rays, first), facet = block_of(surfaces.geometric_normal, first),

@@ -37,6 +37,10 @@ class ShadingBatch {
   /// One hit by itself, and back after its diffuse color or its shading normal changed.
   ShadingPoint point(const RayBatch& rays, std::size_t i) const;
   void set_varied(std::size_t i, const ShadingPoint& point);
+  void set_diffuse(std::size_t i, const Rgb& diffuse) { diffuse_[i] = diffuse; }
+
+  /// What samples look at through `window`, of the block from `first` on.
+  SampleLanes samples(const RayBatch& rays, const SampleWindow& window, std::size_t first) const;
 
   /// How `light` stands to every hit; then for one of them.
   void meet(const RayBatch& rays, const Light& light, HighlightForm form);
@@ -65,6 +69,32 @@ class ShadingBatch {
   Vec3Array reflected_ = {}, refracted_ = {};
   float reflectance_[kSize] = {};
   std::uint32_t refracts_[kSize] = {};
+};
+
+/// In which cells of their materials' checkers a batch's hits lie: found block by block, when the first of a block is
+/// asked for. What it is made of must outlive it.
+class CheckerCells {
+ public:
+  CheckerCells(const ShadingBatch& shading, const RayBatch& rays, const SampleWindow& window)
+      : shading_(shading), rays_(rays), window_(window) {}
+
+  /// 1, -1 or 0, as Pattern::find_cells() has it, of a hit whose material is in_cells.
+  std::int32_t at(std::size_t i) {
+    const std::size_t first = i / kLanes * kLanes;
+    if (first != first_ || shading_.materials[i] != material_) {
+      first_ = first, material_ = shading_.materials[i];
+      material_->diffuse.find_cells(shading_.samples(rays_, window_, first), cells_);
+    }
+    return cells_[i - first];
+  }
+
+ private:
+  const ShadingBatch& shading_;
+  const RayBatch& rays_;
+  const SampleWindow& window_;
+  std::size_t first_ = 0;
+  const Material* material_ = nullptr;  ///< that cells_ are of; null: none yet
+  std::int32_t cells_[kLanes] = {};
 };
 
 }  // namespace raytree

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/true_surfaces.h"
 #include "renderer/hit_surface.h"
 
 namespace raytree {
@@ -21,19 +22,20 @@ bool is_same_crossing(const ShadowPath& path, const Hit& hit, bool leaving, cons
          2 * (path.clearance + point.clearance);
 }
 
-}  // namespace
-
-bool follow_shadow(const Scene& scene, MediaTable* media, const Hit& hit, ShadowPath& path) {
+/// Whether the path ends at what it meets next: the light, or something dark.
+bool ends_at(const Scene& scene, MediaTable* media, const Hit& hit, ShadowPath& path) {
   if (hit.geometry == kNoGeometry) {
     if (media != nullptr) path.transmittance *= media->transmitted(path.media, path.distance);
-    return false;
+    return true;
   }
+  if (scene.materials[scene.material_at(hit)].has_transmission && path.crossings != kMostShadowCrossings) return false;
+  path.transmittance = Rgb();
+  return true;
+}
+
+/// Takes the path through what it meets, the surface at `point`. False: it has ended there.
+bool goes_through(const Scene& scene, MediaTable* media, const Hit& hit, const SurfacePoint& point, ShadowPath& path) {
   const Material& material = scene.materials[scene.material_at(hit)];
-  if (!material.has_transmission || path.crossings == kMostShadowCrossings) {
-    path.transmittance = Rgb();
-    return false;
-  }
-  const SurfacePoint point = hit_surface(scene, path.origin, path.direction, hit);
   const bool leaving = path.direction.dot(point.geometric_normal) > 0;
   const bool counts = !is_same_crossing(path, hit, leaving, point);
   if (media != nullptr) {
@@ -61,8 +63,19 @@ bool follow_shadow(const Scene& scene, MediaTable* media, const Hit& hit, Shadow
   return path.distance > 0;
 }
 
+}  // namespace
+
+bool follow_shadow(const Scene& scene, MediaTable* media, const Hit& hit, ShadowPath& path) {
+  return !ends_at(scene, media, hit, path) &&
+         goes_through(scene, media, hit, hit_surface(scene, path.origin, path.direction, hit), path);
+}
+
 ShadowPaths::ShadowPaths(const Scene& scene, std::size_t capacity)
-    : scene_(scene), rays_(capacity), samples_(capacity), hits_(capacity) {
+    : scene_(scene),
+      rays_(kBatchSize),
+      samples_(kBatchSize),
+      hits_(kBatchSize),
+      surfaces_(std::make_unique<SurfaceBatch>()) {
   rays_.sample = samples_.data();
   paths_.reserve(capacity);
   live_.reserve(capacity);
@@ -78,19 +91,35 @@ void ShadowPaths::follow(MediaTable* media) {
   live_.clear();
   for (std::size_t i = 0; i < paths_.size(); ++i) live_.push_back(static_cast<std::uint32_t>(i));
   while (!live_.empty()) {
-    for (std::size_t i = 0; i < live_.size(); ++i) {
-      ShadowPath& path = paths_[live_[i]];
-      ++path.queries;
-      rays_.set(i, path.origin, path.direction, path.distance);
-      samples_[i] = path.sample;
-    }
-    rays_.size = live_.size();
-    scene_.intersector->intersect(rays_, Coherence::incoherent, hits_);
     std::size_t left = 0;
-    for (std::size_t i = 0; i < live_.size(); ++i)
-      if (follow_shadow(scene_, media, hits_[i], paths_[live_[i]])) live_[left++] = live_[i];
+    for (std::size_t first = 0; first < live_.size(); first += kBatchSize)
+      left = take_on(first, std::min(kBatchSize, live_.size() - first), left, media);
     live_.resize(left);
   }
+}
+
+/// Takes `count` of the live paths, from `first` on, to what they meet and through it. Those that have not ended there
+/// go to live_[left] and on; returns where these end.
+std::size_t ShadowPaths::take_on(std::size_t first, std::size_t count, std::size_t left, MediaTable* media) {
+  for (std::size_t i = 0; i < count; ++i) {
+    ShadowPath& path = paths_[live_[first + i]];
+    ++path.queries;
+    rays_.set(i, path.origin, path.direction, path.distance);
+    samples_[i] = path.sample;
+  }
+  rays_.size = count;
+  scene_.intersector->intersect(rays_, Coherence::incoherent, hits_);
+  // Only surfaces that are gone through are looked for.
+  for (std::size_t i = 0; i < count; ++i)
+    if (ends_at(scene_, media, hits_[i], paths_[live_[first + i]])) hits_.geometry[i] = kNoGeometry;
+  find_surfaces(*scene_.shapes, rays_, hits_, false, *surfaces_);
+  if (scene_.sphere_pixels > 0) move_to_true_surfaces(*scene_.shapes, scene_.sphere_pixels, rays_, hits_, *surfaces_);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (hits_.geometry[i] == kNoGeometry) continue;
+    const std::uint32_t path = live_[first + i];
+    if (goes_through(scene_, media, hits_[i], (*surfaces_)[i], paths_[path])) live_[left++] = path;
+  }
+  return left;
 }
 
 }  // namespace raytree

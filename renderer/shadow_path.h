@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "geometry/ray_batch.h"
+#include "geometry/surface_batch.h"
 #include "renderer/media.h"
 #include "renderer/scene.h"
 
@@ -58,12 +60,15 @@ class ShadowPaths {
   const std::vector<ShadowPath>& paths() const { return paths_; }
 
  private:
+  std::size_t take_on(std::size_t first, std::size_t count, std::size_t left, MediaTable* media);
+
   const Scene& scene_;
   std::vector<ShadowPath> paths_;
   std::vector<std::uint32_t> live_;  ///< into paths_, of those that are not at their end
   RayBatch rays_;
   std::vector<std::uint16_t> samples_;  ///< of rays_
   HitBatch hits_;
+  std::unique_ptr<SurfaceBatch> surfaces_;  ///< at hits_ that are gone through
 };
 
 }  // namespace raytree

@@ -12,9 +12,6 @@ constexpr double kNarrow = 1e-5;
 /// Beyond, the mean is 0 to six digits whatever the window covers.
 constexpr double kWide = 1e6;
 
-/// x less the even number at or below it: in [0, 2).
-double within_period(double x) { return x - 2 * std::floor(x * 0.5); }
-
 /// Integral of square_wave without a constant part: a triangle wave between -1/2 and 1/2.
 double triangle_wave(double x) {
   const double t = within_period(x);
@@ -53,8 +50,6 @@ double edge_integral(const PlaneVector& p, const PlaneVector& q) {
 
 }  // namespace
 
-double square_wave(double x) { return within_period(x) < 1 ? 1 : -1; }
-
 double square_wave_mean(double x, double width) {
   width = std::abs(width);
   if (!(width < kWide)) return 0;
@@ -81,15 +76,10 @@ double square_wave_mean(double x, double width, double other_width) {
 double checker_mean(const PlaneVector& center, const PlaneVector& edge, const PlaneVector& other_edge) {
   const double reach_a = std::abs(edge.a) + std::abs(other_edge.a), reach_b = std::abs(edge.b) + std::abs(other_edge.b);
   if (!(reach_a < kWide && reach_b < kWide)) return 0;
+  if (fits_cell(center, {reach_a, reach_b})) return square_wave(center.a) * square_wave(center.b);
+
   // The sum of cells' signs is what counts: both coordinates lose even numbers.
   const PlaneVector middle{within_period(center.a), within_period(center.b)};
-  const auto within_cell = [](double x, double reach) {
-    const double inside = x < 1 ? x : x - 1;
-    return inside - reach * 0.5 >= 0 && inside + reach * 0.5 <= 1;
-  };
-  if (within_cell(middle.a, reach_a) && within_cell(middle.b, reach_b))
-    return square_wave(middle.a) * square_wave(middle.b);
-
   const double area = edge.a * other_edge.b - edge.b * other_edge.a;
   const double longest = std::max(reach_a, reach_b);
   constexpr double kLeastAreaShare = 1e-7;

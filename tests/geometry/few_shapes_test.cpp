@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -71,6 +72,45 @@ TEST(FewShapes, BatchesFindWhatSingleRaysFind) {
   // The rays lie at the outline: some must meet and some miss, or nothing was tested.
   EXPECT_GT(hits, rays_asked / 10);
   EXPECT_LT(hits, rays_asked * 9 / 10);
+}
+
+TEST(FewShapes, OfSeveralShapesTheNearestWithinTheRayIsFound) {
+  std::mt19937 random(23);
+  std::uniform_real_distribution<float> place(-3, 3), radius(0.2f, 1.5f), end(0.5f, 9);
+  ShapeSet shapes;
+  shapes.planes = {{Vec3d(0, -2, 0), Vec3d(0, 1, 0)}, {Vec3d(4, 0, 0), Vec3d(0.6, 0, 0.8)}};
+  for (int i = 0; i < 6; ++i) {
+    shapes.spheres.center_radius.push_back({place(random), place(random), place(random), radius(random)});
+    shapes.spheres.shape.push_back(0);
+    shapes.discs.center_radius.push_back({place(random), place(random), place(random), radius(random)});
+    shapes.discs.normal.push_back({0.6f, 0, 0.8f});
+    shapes.discs.shape.push_back(0);
+  }
+  const FewShapes few(shapes, kMostFewShapes);
+  FewHits found;  // of larger batches first: what they left behind must not count
+  std::array<int, 4> hits{};
+  for (std::size_t size = 40; size > 0; --size)
+    for (int round = 0; round < 20; ++round) {
+      RayBatch rays(size);
+      while (rays.size < size) {
+        const Vec3f toward(place(random), place(random), place(random));
+        rays.push({place(random), place(random), place(random)}, toward * (1 / std::sqrt(toward.dot(toward))),
+                  rays.size % 3 == 0 ? INFINITY : end(random));
+      }
+      intersect_few(few, rays, found);
+      for (std::size_t i = 0; i < size; ++i) {
+        const Hit single = intersect_few(few, rays.origin(i), rays.direction(i), rays.max_distance[i]);
+        ASSERT_EQ(found.geometry[i], single.geometry) << "ray " << i << " of " << size;
+        ASSERT_EQ(found.distance[i], single.distance);
+        if (single.geometry == kNoGeometry) {
+          ++hits[3];
+          continue;
+        }
+        ASSERT_EQ(found.primitive[i], single.primitive);
+        ++hits[single.geometry];
+      }
+    }
+  for (const int count : hits) EXPECT_GT(count, 1000);
 }
 
 TEST(FewShapes, RaysThatOverflowAreLookedAtInDouble) {

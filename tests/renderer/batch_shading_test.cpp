@@ -171,12 +171,11 @@ TEST(RayQueue, TheNewestComeFirstAndInOrder) {
   ASSERT_EQ(queue.size(), kFirst + kSecond);
   const auto batch = std::make_unique<RayArrays>();
   std::uint32_t left = kFirst + kSecond;
-  RayBatch rays(kBatchSize);
+  const RayBatch rays = batch->as_batch();
   while (!queue.empty()) {
     queue.pop(*batch);
     ASSERT_EQ(batch->size, std::min<std::size_t>(kBatchSize, left));
     left -= static_cast<std::uint32_t>(batch->size);
-    batch->copy_to(rays);
     for (std::size_t i = 0; i < batch->size; ++i) {
       const auto number = static_cast<float>(left + i);
       ASSERT_EQ(batch->level[i], left + i);
@@ -185,6 +184,7 @@ TEST(RayQueue, TheNewestComeFirstAndInOrder) {
       ASSERT_EQ(rays.origin(i), Vec3f(number));
       ASSERT_EQ(rays.direction(i), Vec3f(0, 0, number));
       ASSERT_EQ(rays.max_distance[i], std::numeric_limits<float>::infinity());
+      ASSERT_EQ(rays.sample[i], left + i);
     }
   }
   EXPECT_EQ(left, 0u);

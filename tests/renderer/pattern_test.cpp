@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <random>
 
 #include "geometry/angle.h"
 #include "renderer/noise.h"
@@ -71,6 +73,61 @@ TEST(Pattern, StripesAndNoiseGoByTextureCoordinates) {
       const double n = octave_noise({2, 0.5, 4}, {(x + 0.5) / 4, (16 - y - 0.5) / 4, 0}, 0).value;
       EXPECT_NEAR(color_at(noisy.film, x, y).r, 0.5 + 0.5 * n, 2e-6);
     }
+}
+
+TEST(Pattern, ACheckersCellsAreWhatOnePointAfterTheOtherShows) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> place(-4, 4), reach(-1, 1);
+  std::array<int, 3> counts{};  // odd, several cells, even
+  int blurred = 0;
+  for (const bool filtered : {true, false})
+    for (const auto plane : {CheckerPattern::Plane::xy, CheckerPattern::Plane::xz, CheckerPattern::Plane::yz})
+      for (int round = 0; round < 2000; ++round) {
+        CheckerPattern checker;
+        checker.even = Rgb(0.25f, 0.5f, 1), checker.odd = Rgb(1, 0.125f, 0);
+        checker.size = 0.7, checker.offset = {0.3, -0.1};
+        checker.plane = plane, checker.filtered = filtered;
+        const Pattern pattern = make_pattern(checker, Vec3d(0.5, -1, 2));
+        ASSERT_TRUE(pattern.has_cells());
+        // Windows from none at all to several cells, places among them where cells meet.
+        const float width = round % 5 == 0 ? 0.0f : std::ldexp(1.0f, round % 12 - 10);
+        const auto vector = [&](auto&& value) { return Vec3f(value(random), value(random), value(random)); };
+        SampleLanes samples;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+          const Vec3f at = vector(place);
+          samples.position.set(i, round % 7 == 0 ? Vec3f(std::round(at.x), std::round(at.y), std::round(at.z)) : at);
+          samples.edge.set(i, vector(reach) * width);
+          samples.other_edge.set(i, vector(reach) * width);
+          samples.leaves_edges[i] = (round / 2) % 2;
+        }
+        std::int32_t cells[kLanes];
+        pattern.find_cells(samples, cells);
+        for (std::size_t i = 0; i < kLanes; ++i) {
+          SurfacePoint point;
+          point.position = samples.position[i];
+          const Footprint footprint{samples.edge[i], samples.other_edge[i], samples.leaves_edges[i] != 0};
+          const Rgb color = pattern.at(point, footprint, nullptr);
+          ASSERT_TRUE(cells[i] == 1 || cells[i] == 0 || cells[i] == -1);
+          ++counts[static_cast<std::size_t>(cells[i] + 1)];
+          if (cells[i] != 0)
+            ASSERT_EQ(color, cells[i] > 0 ? checker.even : checker.odd);
+          else
+            blurred += color != checker.even && color != checker.odd;
+        }
+      }
+  EXPECT_GT(counts[0], 10000);
+  EXPECT_GT(counts[2], 10000);
+  // What is left to be looked at one by one are mixtures, but where the window has just reached the border.
+  EXPECT_GT(counts[1], 10000);
+  EXPECT_GT(blurred, counts[1] * 9 / 10);
+}
+
+TEST(Pattern, NoCellsAreFoundInWhatIsNotACheckerOverPositions) {
+  CheckerPattern over_texture;
+  over_texture.plane = CheckerPattern::Plane::uv;
+  for (const ColorPattern& pattern :
+       {ColorPattern(over_texture), ColorPattern(StripesPattern()), ColorPattern(NoisePattern()), ColorPattern(Rgb(1))})
+    EXPECT_FALSE(make_pattern(pattern, Vec3d(0, 0, 0)).has_cells()) << pattern.index();
 }
 
 TEST(Pattern, NoiseMixesItsTwoColorsByItsShare) {

@@ -224,6 +224,18 @@ TEST(Shading, AHighlightsWeightFollowsItsTableOverTheAngleOfIncidence) {
   EXPECT_EQ(prepared(scene).materials[0].highlight, Rgb(1, 0.5f, 1));
 }
 
+TEST(Shading, HighlightsAreLeftOutWhereTheirPowerIsZeroAndNowhereElse) {
+  for (const double exponent : {1.0, 2.0, 7.5, 20.0, 200.0, 400.0, 1e5, 1e18}) {
+    MaterialDescription description;
+    description.highlight = {Rgb(1), exponent};
+    const Material shiny = make_material(description, false, Vec3d(0, 0, 0));
+    EXPECT_EQ(std::pow(shiny.least_highlight, shiny.exponent), 0) << exponent;
+    // The next power of a half that is not 0 is 2^-149; two roundings of an exponent of 151 lie between.
+    EXPECT_GE(shiny.least_highlight, std::nextafter(static_cast<float>(std::exp2(-151.5 / exponent)), 0.0f))
+        << exponent;
+  }
+}
+
 TEST(Shading, CheckerLooksUpTheSquareThatAPointLiesIn) {
   SceneDescription scene = dark_scene(40, front_camera(8));  // five pixels a unit
   scene.ambient = Rgb(1);
