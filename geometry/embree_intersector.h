@@ -27,8 +27,8 @@ struct EmbreeOptions {
     triangles,
     quads,  ///< pairs of them, see quad_pairs.h: built in half the time, in two thirds of the memory, at .84 of the
             ///< speed
-    grids   ///< see lattice_grids.h: of lattices built in a tenth of the time, in a third of the memory, at .75 to .85
-            ///< of the speed; of other meshes no sooner than quads, and slower to trace
+    grids   ///< see lattice_grids.h: of lattices built in a sixth of the time, in a third of the memory, at two thirds
+            ///< to .8 of the speed; of other meshes no sooner than quads, and slower to trace
   };
   int threads = 0;       ///< of the build; 0: all of the arena
   bool robust = true;    ///< watertight edges at .85-.91 of the speed

@@ -168,6 +168,7 @@ GridCounts count_grids(std::span<const std::uint32_t> corners) {
     BandCounts sum;
     for (const BandCounts& band : count_bands(lattice)) sum.own += band.own, sum.copied += band.copied;
     counts.grids += sum.own + sum.copied;
+    counts.lattice_triangles += lattice.triangle_count();
     if (sum.copied > 0) counts.points += mirrored_points(lattice);
   }
   between(lattices, corners.size() / 3, [&](std::size_t begin, std::size_t end) {

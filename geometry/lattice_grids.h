@@ -56,6 +56,7 @@ MeshGrids make_grids(std::span<const std::uint32_t> corners, std::span<const Vec
 /// if all had partners.
 struct GridCounts {
   std::size_t grids = 0, points = 0;
+  std::size_t lattice_triangles = 0;
 };
 GridCounts count_grids(std::span<const std::uint32_t> corners);
 
