@@ -48,9 +48,9 @@ const Entry& entry_named(const char* flag, const std::string& text, const Entry 
 
 void add_hierarchy_flags(CLI::App& command, SceneFlags& flags) {
   command
-      .add_option(
-          "--hierarchy", flags.hierarchy,
-          "What the tracer builds: balanced, quads, compact, compact-quads or quick; default: by the rays expected")
+      .add_option("--hierarchy", flags.hierarchy,
+                  "What the tracer builds: balanced, quads, grids, compact, compact-quads or quick; default: by the "
+                  "rays expected")
       ->type_name("KIND")
       ->group("Tracing");
   command.add_option("--memory", flags.memory, "Memory allowed for shapes and hierarchy, e.g. 800M or 4G")

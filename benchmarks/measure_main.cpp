@@ -127,8 +127,8 @@ int run(const std::vector<std::string>& words) {
     std::printf("%s\n", launch_apart({words.begin() + 1, words.end()}).c_str());
     return kSuccess;
   }
-  if (words.size() == 1 && words[0] == kBareLargeFlag) {
-    std::printf("%s\n", bare_large_json().c_str());
+  if (words.size() == 2 && words[0] == kBareLargeFlag) {
+    std::printf("%s\n", bare_large_json(words[1]).c_str());
     return kSuccess;
   }
   if (words.size() == 1 && words[0] == kInstancesMemoryFlag) {

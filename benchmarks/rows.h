@@ -62,9 +62,9 @@ inline constexpr Row kRows[] = {
 };
 
 /// What `large` compares with, measured in a process of its own (see large.cpp): generates the terrain, builds over it
-/// with Embree alone, traces the picture's rays by bare calls; JSON of seconds and bytes.
-std::string bare_large_json();
-inline constexpr const char* kBareLargeFlag = "--bare-large";  ///< makes raytree_measure print it
+/// with Embree alone in a kind of hierarchy, traces the picture's rays by bare calls; JSON of seconds and bytes.
+std::string bare_large_json(const std::string& hierarchy);
+inline constexpr const char* kBareLargeFlag = "--bare-large";  ///< KIND: makes raytree_measure print it
 
 /// What `instances` says of memory, measured in a process of its own: bytes before and after preparing its scene.
 std::string instances_memory_json();

@@ -95,26 +95,21 @@ bool may_meet(const embree::SceneBounds& bounds, const Ray& ray, const int* vali
   return may != 0;
 }
 
-/// Whether a packet's rays run so much alike that following them together is faster. Lanes that are not live count.
+/// Whether the first `count` of a packet's rays run so much alike that following them together is faster. What lies in
+/// the padding does not count: it depends on what was traced before.
 template <int Width, class Ray>
-bool runs_alike(const Ray& ray) {
+bool runs_alike(const Ray& ray, std::size_t count) {
   float least = 1;
-  for (int i = 0; i < Width; ++i)
-    least = std::min(least, ray.dir_x[i] * ray.dir_x[0] + ray.dir_y[i] * ray.dir_y[0] + ray.dir_z[i] * ray.dir_z[0]);
+  for (int i = 0; i < Width; ++i) {
+    const float cosine = ray.dir_x[i] * ray.dir_x[0] + ray.dir_y[i] * ray.dir_y[0] + ray.dir_z[i] * ray.dir_z[0];
+    least = std::min(least, static_cast<std::size_t>(i) < count ? cosine : 1.0f);
+  }
   return least >= kAlikeCosine;
 }
 
 /// Embree's id of the instance that was hit, as an index into ShapeSet::instances.
 inline InstanceId instance_of(unsigned int embree_id, GeometryId first_instance) {
   return embree_id == RTC_INVALID_GEOMETRY_ID ? kNoInstance : embree_id - first_instance;
-}
-
-/// The list that names the triangles of what was hit; null: it is no quad, or nothing.
-inline const QuadList* quads_at(const std::vector<std::vector<QuadList>>& quads, const ShapeSet& shapes,
-                                GeometryId geometry, InstanceId instance) {
-  if (geometry < kFirstMeshGeometry || geometry == kNoGeometry) return nullptr;
-  const std::size_t space = instance == kNoInstance ? 0 : 1 + shapes.instances[instance].group;
-  return &quads[space][geometry - kFirstMeshGeometry];
 }
 
 /// `Instanced`: the scene has instances, the first of them of Embree's id `first_instance`.
@@ -134,7 +129,7 @@ void intersect_packets(RTCScene scene, const embree::SceneBounds& bounds, const 
       continue;
     }
     for (int i = 0; i < Width; ++i) embree::clear_hit(packet.hit, i);
-    if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet.ray));
+    if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet.ray, rays.size - first));
     query.intersect(scene, valid, packet);
     copy_lanes<Width>(hits.geometry + first, packet.hit.geomID);
     copy_lanes<Width>(hits.primitive + first, packet.hit.primID);
@@ -159,7 +154,7 @@ void occluded_packets(RTCScene scene, const embree::SceneBounds& bounds, const R
       std::fill_n(occluded + first, Width, std::uint8_t(0));
       continue;
     }
-    if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet));
+    if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet, rays.size - first));
     query.occluded(scene, valid, packet);
     // Embree marks an occluded ray by tfar = -infinity; a lane that was not live counts as open.
     for (int i = 0; i < Width; ++i) occluded[first + i] = (packet.tfar[i] < 0) & (valid[i] != 0);
@@ -189,18 +184,11 @@ RTCBuildQuality embree_quality(EmbreeOptions::Quality quality) {
   return quality == EmbreeOptions::Quality::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
 }
 
-std::vector<QuadList> quads_of(const BoundedShapes& shapes) {
-  std::vector<QuadList> lists;
-  lists.reserve(shapes.meshes.size());
-  for (const MeshEntry& entry : shapes.meshes) lists.push_back(joined_quads(entry.mesh.corners));
-  return lists;
-}
-
-/// A scene of these shapes, not committed. Embree writes to none of the buffers that it shares. quads: a list a mesh;
-/// null: meshes become what `parts` says.
+/// A scene of these shapes, not committed. Embree writes to none of the buffers that it shares. forms: what meshes
+/// become; null: what `parts` says. Grids over copied points have ids from first_copied on.
 embree::SceneHandle scene_of(RTCDevice device, const BoundedShapes& shapes, const EmbreeOptions& options,
-                             const FewShapes& left_out, const embree::SceneParts& parts,
-                             const std::vector<QuadList>* quads) {
+                             const FewShapes& left_out, const embree::SceneParts& parts, const embree::MeshForms* forms,
+                             GeometryId first_copied) {
   embree::SceneHandle handle(rtcNewScene(device));
   RTCScene scene = handle.get();
   int flags = RTC_SCENE_FLAG_NONE;
@@ -238,10 +226,21 @@ embree::SceneHandle scene_of(RTCDevice device, const BoundedShapes& shapes, cons
   for (std::size_t i = 0; i < shapes.meshes.size(); ++i) {
     const TriangleMesh& mesh = shapes.meshes[i].mesh;
     if (mesh.corners.empty()) continue;
-    const RTCGeometryType type = quads != nullptr ? RTC_GEOMETRY_TYPE_QUAD : parts.mesh_type;
-    attach(type, kFirstMeshGeometry + static_cast<GeometryId>(i), [&](RTCGeometry geometry) {
-      if (quads != nullptr) {
-        embree::share_quads(geometry, mesh, (*quads)[i]);
+    const auto id = static_cast<GeometryId>(i);
+    if (forms != nullptr && !forms->grids.empty()) {
+      const MeshGrids& grids = forms->grids[i];
+      if (!grids.own.empty())
+        attach(RTC_GEOMETRY_TYPE_GRID, kFirstMeshGeometry + id,
+               [&](RTCGeometry geometry) { embree::share_grids(geometry, mesh.positions, grids.own); });
+      if (!grids.copied.empty())
+        attach(RTC_GEOMETRY_TYPE_GRID, first_copied + id,
+               [&](RTCGeometry geometry) { embree::share_grids(geometry, grids.points, grids.copied); });
+      continue;
+    }
+    const RTCGeometryType type = forms != nullptr ? RTC_GEOMETRY_TYPE_QUAD : parts.mesh_type;
+    attach(type, kFirstMeshGeometry + id, [&](RTCGeometry geometry) {
+      if (forms != nullptr) {
+        embree::share_quads(geometry, mesh, forms->quads[i]);
         return;
       }
       if (parts.set_mesh) {
@@ -280,13 +279,6 @@ void commit(RTCScene scene, const std::atomic<bool>* stop) {
 }
 
 }  // namespace
-
-void embree::share_quads(RTCGeometry geometry, const TriangleMesh& mesh, const QuadList& quads) {
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
-                             sizeof(Vec3f), mesh.positions.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, quads.corners.data(), 0,
-                             4 * sizeof(std::uint32_t), quads.size());
-}
 
 void EmbreeIntersector::throw_if_failed(State& state, const std::atomic<bool>* stop) {
   if (stop != nullptr && stop->load()) throw Error(ErrorKind::failure, {}, "interrupted");
@@ -329,14 +321,17 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
       &state);
   state.wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
 
-  const auto quads = [&](std::size_t at) { return state.quads.empty() ? nullptr : &state.quads[at]; };
-  if (options.primitives == EmbreeOptions::Primitives::quads) {
-    state.quads.resize(1 + shapes.groups.size());
-    state.quads[0] = quads_of(shapes);
-    for (std::size_t i = 0; i < shapes.groups.size(); ++i) state.quads[1 + i] = quads_of(shapes.groups[i]);
-    for (const std::vector<QuadList>& lists : state.quads)
-      for (const QuadList& list : lists) state.quad_bytes += list.memory_bytes();
+  state.primitives = options.primitives;
+  if (options.primitives != EmbreeOptions::Primitives::triangles) {
+    state.forms.emplace_back(shapes, options.primitives);
+    for (const BoundedShapes& group : shapes.groups) state.forms.emplace_back(group, options.primitives);
+    for (const embree::MeshForms& forms : state.forms) state.form_bytes += forms.memory_bytes();
   }
+  const auto forms = [&](std::size_t at) { return state.forms.empty() ? nullptr : &state.forms[at]; };
+  state.first_instance = kFirstMeshGeometry + static_cast<GeometryId>(shapes.meshes.size());
+  state.first_copied = {state.first_instance + static_cast<GeometryId>(shapes.instances.size())};
+  for (const BoundedShapes& group : shapes.groups)
+    state.first_copied.push_back(kFirstMeshGeometry + static_cast<GeometryId>(group.meshes.size()));
 
   // Instances refer to groups that are built; what nothing uses is not.
   std::vector<bool> used(shapes.groups.size(), false);
@@ -344,15 +339,15 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
   state.groups.resize(shapes.groups.size());
   for (std::size_t i = 0; i < shapes.groups.size(); ++i) {
     if (!used[i]) continue;
-    state.groups[i] = scene_of(device, shapes.groups[i], options, FewShapes(), parts, quads(1 + i));
+    state.groups[i] =
+        scene_of(device, shapes.groups[i], options, FewShapes(), parts, forms(1 + i), state.first_copied[1 + i]);
     commit(state.groups[i].get(), options.stop);
     throw_if_failed(state, options.stop);
   }
 
-  state.scene = scene_of(device, shapes, options, state.few, parts, quads(0));
+  state.scene = scene_of(device, shapes, options, state.few, parts, forms(0), state.first_copied[0]);
   state.instanced = !shapes.instances.empty();
   state.together = shapes.instances.size() < options.many_instances;
-  state.first_instance = kFirstMeshGeometry + static_cast<GeometryId>(shapes.meshes.size());
   for (std::size_t i = 0; i < shapes.instances.size(); ++i) {
     const Instance& instance = shapes.instances[i];
     embree::Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
@@ -363,8 +358,7 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(state.scene.get(), geometry.get(), state.first_instance + static_cast<GeometryId>(i));
   }
-  if (parts.add)
-    parts.add(device, state.scene.get(), state.first_instance + static_cast<GeometryId>(shapes.instances.size()));
+  if (parts.add) parts.add(device, state.scene.get(), state.first_copied[0]);
   commit(state.scene.get(), options.stop);
   throw_if_failed(state, options.stop);
   state.bounds = bounds_of(state.scene.get());
@@ -373,6 +367,19 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
 EmbreeIntersector::~EmbreeIntersector() = default;
 
 void EmbreeIntersector::name_triangles(std::size_t count, HitBatch& hits) const noexcept {
+  if (state_->primitives == EmbreeOptions::Primitives::quads) name_triangles_of_quads(count, hits);
+  if (state_->primitives == EmbreeOptions::Primitives::grids) name_triangles_of_grids(count, hits);
+}
+
+/// Eight hits at a time.
+void EmbreeIntersector::name_triangles_of_quads(std::size_t count, HitBatch& hits) const noexcept {
+  const State& state = *state_;
+  /// The list that names the triangles of what was hit; null: it is no quad, or nothing.
+  const auto quads_at = [&state](GeometryId geometry, InstanceId instance) -> const QuadList* {
+    if (geometry < kFirstMeshGeometry || geometry == kNoGeometry) return nullptr;
+    const std::size_t space = instance == kNoInstance ? 0 : 1 + state.shapes->instances[instance].group;
+    return &state.forms[space].quads[geometry - kFirstMeshGeometry];
+  };
   for (std::size_t first = 0; first < count; first += kLanes) {
     IntegerLaneVector triangle = {}, halves = {}, is_quad = {}, primitive;
     const auto look_up = [&](std::size_t lane, const QuadList& list) {
@@ -380,16 +387,14 @@ void EmbreeIntersector::name_triangles(std::size_t count, HitBatch& hits) const 
       is_quad[lane] = 1, triangle[lane] = list.first[quad], halves[lane] = list.halves[quad].bits();
     };
     const GeometryId* const geometry = hits.geometry + first;
-    if (!state_->instanced && first + kLanes <= count && std::equal(geometry + 1, geometry + kLanes, geometry)) {
+    if (!state.instanced && first + kLanes <= count && std::equal(geometry + 1, geometry + kLanes, geometry)) {
       // Neighbors mostly hit one mesh, or nothing.
-      const QuadList* const list = quads_at(state_->quads, *state_->shapes, *geometry, kNoInstance);
+      const QuadList* const list = quads_at(*geometry, kNoInstance);
       if (list == nullptr) continue;
       for (std::size_t lane = 0; lane < kLanes; ++lane) look_up(lane, *list);
     } else {
       for (std::size_t lane = 0; lane < std::min(kLanes, count - first); ++lane)
-        if (const QuadList* const list =
-                quads_at(state_->quads, *state_->shapes, geometry[lane], hits.instance[first + lane]))
-          look_up(lane, *list);
+        if (const QuadList* const list = quads_at(geometry[lane], hits.instance[first + lane])) look_up(lane, *list);
     }
     LaneVector u, v;
     std::memcpy(&primitive, hits.primitive + first, sizeof(primitive));
@@ -406,6 +411,23 @@ void EmbreeIntersector::name_triangles(std::size_t count, HitBatch& hits) const 
   }
 }
 
+void EmbreeIntersector::name_triangles_of_grids(std::size_t count, HitBatch& hits) const noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    const GeometryId geometry = hits.geometry[i];
+    if (geometry < kFirstMeshGeometry || geometry == kNoGeometry) continue;
+    const InstanceId instance = hits.instance[i];
+    const std::size_t space = instance == kNoInstance ? 0 : 1 + state_->shapes->instances[instance].group;
+    const bool copied = geometry >= state_->first_copied[space];
+    const GeometryId mesh = geometry - (copied ? state_->first_copied[space] : kFirstMeshGeometry);
+    const BoundedShapes& shapes =
+        space == 0 ? static_cast<const BoundedShapes&>(*state_->shapes) : state_->shapes->groups[space - 1];
+    const TrianglePoint point = triangle_point(state_->forms[space].grids[mesh], shapes.meshes[mesh].mesh.corners,
+                                               copied, hits.primitive[i], hits.u[i], hits.v[i]);
+    hits.geometry[i] = kFirstMeshGeometry + mesh;
+    hits.primitive[i] = point.triangle, hits.u[i] = point.u, hits.v[i] = point.v;
+  }
+}
+
 void EmbreeIntersector::nearest_bounded(const RayBatch& rays, Coherence coherence, const float* max_distance,
                                         HitBatch& hits) const noexcept {
   if (state_->instanced)
@@ -415,7 +437,7 @@ void EmbreeIntersector::nearest_bounded(const RayBatch& rays, Coherence coherenc
   const auto run = state_->wide ? (state_->instanced ? intersect_packets<8, true> : intersect_packets<8, false>)
                                 : (state_->instanced ? intersect_packets<4, true> : intersect_packets<4, false>);
   run(state_->scene.get(), state_->bounds, rays, state_->told(coherence), max_distance, state_->first_instance, hits);
-  if (!state_->quads.empty()) name_triangles(rays.size, hits);
+  if (!state_->forms.empty()) name_triangles(rays.size, hits);
 }
 
 void EmbreeIntersector::intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept {
@@ -450,7 +472,7 @@ Hit EmbreeIntersector::intersect_one(const Vec3f& origin, const Vec3f& direction
   if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID)
     nearest = {ray.hit.geomID, ray.hit.primID, ray.hit.u,
                ray.hit.v,      ray.ray.tfar,   instance_of(ray.hit.instID[0], state_->first_instance)};
-  if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID && !state_->quads.empty()) {
+  if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID && !state_->forms.empty()) {
     thread_local HitBatch one(1);
     one.set(0, nearest);
     name_triangles(1, one);
@@ -471,10 +493,10 @@ bool EmbreeIntersector::occluded_one(const Vec3f& origin, const Vec3f& direction
 bool EmbreeIntersector::follows_packets_together() const noexcept { return state_->together; }
 
 std::size_t EmbreeIntersector::memory_bytes() const noexcept {
-  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->memory.load())) + state_->quad_bytes;
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->memory.load())) + state_->form_bytes;
 }
 std::size_t EmbreeIntersector::peak_memory_bytes() const noexcept {
-  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->peak_memory.load())) + state_->quad_bytes;
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state_->peak_memory.load())) + state_->form_bytes;
 }
 
 std::string EmbreeIntersector::version() { return "Embree " RTC_VERSION_STRING; }

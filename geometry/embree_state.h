@@ -4,12 +4,14 @@
 #include <atomic>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "geometry/embree_api.h"
 #include "geometry/embree_intersector.h"
 #include "geometry/few_shapes.h"
+#include "geometry/lattice_grids.h"
 #include "geometry/quad_pairs.h"
 
 namespace raytree {
@@ -38,14 +40,28 @@ struct SceneParts {
 /// Has a quad geometry share a mesh's positions and the list of its quads.
 void share_quads(RTCGeometry geometry, const TriangleMesh& mesh, const QuadList& quads);
 
+/// Has a grid geometry share points and grids over them; whatever reads 16 bytes at a point may do so at the last one.
+void share_grids(RTCGeometry geometry, std::span<const Vec3f> points, std::span<const LatticeGrid> grids);
+
+/// What the meshes of a scene or group become in place of triangles; empty: not that.
+struct MeshForms {
+  std::vector<QuadList> quads;
+  std::vector<MeshGrids> grids;
+
+  MeshForms() = default;
+  MeshForms(const BoundedShapes& shapes, EmbreeOptions::Primitives primitives);
+  std::size_t memory_bytes() const;
+};
+
 }  // namespace embree
 
 struct EmbreeIntersector::State {
   const ShapeSet* shapes = nullptr;
   FewShapes few;  ///< that Embree does not hold
-  /// The quads of the scene's meshes, then of each group's, where meshes are handed over as quads; else empty.
-  std::vector<std::vector<QuadList>> quads;
-  std::size_t quad_bytes = 0;
+  /// Of the scene's meshes, then of each group's, where meshes are not handed over as triangles; else empty.
+  std::vector<embree::MeshForms> forms;
+  EmbreeOptions::Primitives primitives = EmbreeOptions::Primitives::triangles;  ///< what meshes are handed over as
+  std::size_t form_bytes = 0;
   std::atomic<std::ptrdiff_t> memory{0};
   std::atomic<std::ptrdiff_t> peak_memory{0};
   std::mutex error_mutex;
@@ -56,6 +72,8 @@ struct EmbreeIntersector::State {
   embree::SceneHandle scene;
   embree::SceneBounds bounds;     ///< of `scene`
   GeometryId first_instance = 0;  ///< Embree's id of ShapeSet::instances[0]
+  /// Embree's id of the first mesh's grids over copied points, of the scene, then of each group.
+  std::vector<GeometryId> first_copied;
   bool instanced = false;
   bool together = true;  ///< see follows_packets_together()
 

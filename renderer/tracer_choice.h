@@ -14,7 +14,12 @@
 namespace raytree {
 
 /// What was measured of one kind of hierarchy over a million triangles and more, on a processor with AVX-512 and Embree
-/// 3.13.5. Of quads: where every triangle has a partner; each without one counts as two.
+/// 3.13.5. Of quads: where every triangle has a partner; each without one counts as two. Of grids: where every grid has
+/// all its cells; each counts as the eight triangles of one that has.
+///
+/// Embree's highest quality, which may split triangles between nodes, is none of them: in watertight scenes the
+/// hierarchy is the very one of medium quality, to the byte, also of long thin triangles across each other; in others
+/// it took a sixth longer to build and was no faster (`raytree bench` compares).
 struct HierarchyCost {
   const char* name;
   EmbreeOptions::Primitives primitives;
@@ -36,6 +41,9 @@ struct HierarchyDemand {
   std::uint64_t quads = 0;           ///< the same with triangles joined in pairs, estimated
   double rays = 0;                   ///< expected
   std::uint64_t memory_allowed = 0;  ///< bytes, of the hierarchy; 0: any
+  /// Grids that hold the same, and points that are copied for them; 0: not known to be lattices, each triangle would be
+  /// a grid of its own. (A sphere counts as one.)
+  std::uint64_t grids = 0, grid_points = 0;
 };
 
 struct HierarchyChoice {
@@ -43,13 +51,14 @@ struct HierarchyChoice {
   std::string reason;  ///< one line for --verbose
 };
 
-/// Primitives of a scene and, where quads may be worth their joining, of the same with triangles joined in pairs
-/// (else: as many as primitives). The scene's arrays must be in place.
+/// Primitives of a scene and, where they may be worth the time, those of the same with triangles joined in pairs (else:
+/// as many as primitives) and as grids (else: 0). The scene's arrays must be in place.
 HierarchyDemand hierarchy_demand(const ShapeSet& shapes, std::uint64_t primitives, double rays,
                                  std::uint64_t memory_allowed);
 
 /// The kind for which building and tracing together take least time, among the repeatable ones that fit in the memory
-/// allowed; the balanced one unless another saves kLeastSaving of the time. When none fits, the smallest.
+/// allowed; the first of these, mostly the balanced one, unless another saves kLeastSaving of its time. When none fits,
+/// the smallest.
 HierarchyChoice choose_hierarchy(const HierarchyDemand& demand);
 
 /// That of the name, e.g. "compact". Throws Error (bad_input) with the names there are.
@@ -57,8 +66,8 @@ HierarchyChoice hierarchy_named(const std::string& name);
 
 inline constexpr double kLeastSaving = 0.2;
 
-/// Rays that a full frame takes, roughly: samples of the eye by the kind of anti-aliasing, a shadow ray a light each,
-/// and as much again where materials reflect or transmit.
+/// Rays that a full frame takes, roughly: samples of the eye by the kind of anti-aliasing, .6 of a shadow ray a light
+/// each, and as much again where materials reflect or transmit.
 double expected_rays(const SceneDescription& scene);
 
 }  // namespace raytree

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "geometry/lattice.h"
 #include "renderer/scene_reader.h"
 
 namespace raytree::benchmarks {
@@ -78,7 +79,9 @@ std::vector<Knob> knobs_of(const SceneTraits& traits, int reference_grid) {
       knobs.push_back(flag_knob("reflections", "--reflections", {"classic", "clamped", "consistent"}));
   }
   if (traits.triangles) {
-    knobs.push_back(flag_knob("hierarchy", "--hierarchy", {"quick", "quads", "balanced", "compact", "compact-quads"}));
+    std::vector<std::string> kinds = {"quick", "quads", "balanced", "compact", "compact-quads"};
+    if (traits.lattices) kinds.insert(kinds.begin() + 1, "grids");
+    knobs.push_back(flag_knob("hierarchy", "--hierarchy", kinds));
     knobs.push_back(flag_knob("edges", "--edges", {"fast", "watertight"}));
   }
   knobs.push_back(flag_knob("tracer", "--intersector", {"embree", "spheres"}));
@@ -193,6 +196,11 @@ SceneTraits scene_traits(const Scene& scene) {
   };
   traits.branches = has("reflection") || has("refraction");
   traits.rough = scene.rough_surfaces;
+  const auto note_lattices = [&](const BoundedShapes& shapes) {
+    for (const MeshEntry& entry : shapes.meshes) traits.lattices |= may_be_lattices(entry.mesh.corners);
+  };
+  note_lattices(*scene.shapes);
+  for (const BoundedShapes& group : scene.shapes->groups) note_lattices(group);
   note_sides(scene.description, traits);
   return traits;
 }

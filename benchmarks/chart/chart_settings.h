@@ -48,6 +48,7 @@ struct SceneTraits {
   bool facets = false;     ///< something is shaded in one of the four ways
   bool curved = false;     ///< something is tessellated
   bool triangles = false;  ///< the tracer holds a hierarchy of them
+  bool lattices = false;   ///< and some mesh of them may be one, see may_be_lattices()
   bool branches = false;   ///< something reflects or transmits
   bool rough = false;
   std::vector<std::string> sided_shapes;  ///< names of round shapes made of facets

@@ -92,7 +92,7 @@ TEST(CurvedSurfaceFlags, HierarchyAndMemorySayWhatIsBuilt) {
     return result.err + result.out;
   };
   EXPECT_TRUE(contains(report({}), "balanced hierarchy for ")) << report({});
-  for (const char* kind : {"balanced", "quads", "quick", "compact", "compact-quads"})
+  for (const char* kind : {"balanced", "quads", "grids", "quick", "compact", "compact-quads"})
     EXPECT_TRUE(contains(report({"--hierarchy", kind}), std::string(kind) + " hierarchy, as asked for"));
   // Room for a compact one of so many triangles, and not for a balanced one; then for none at all.
   const Json info = s.info({"--rate", "200"});

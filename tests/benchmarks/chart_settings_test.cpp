@@ -8,6 +8,9 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <utility>
+
+#include "renderer/scene.h"
 
 namespace raytree::benchmarks {
 namespace {
@@ -97,6 +100,34 @@ TEST(ChartSettings, CheapOnesComeFirst) {
   std::string order;
   for (const ChartSetting& s : settings) order += s.value + " ";
   EXPECT_EQ(order, "own added cheap like other middle dear naive late ") << "30 between two ends count as 60";
+}
+
+// Grids are what meshes of lattices may be handed over as; of others they would be pairs.
+TEST(ChartSettings, TryGridsWhereAMeshIsALattice) {
+  const auto tries_grids = [](const SceneTraits& traits) {
+    const std::vector<ChartSetting> sweep = sweep_of(traits, {}, 3);
+    return std::any_of(sweep.begin(), sweep.end(), [](const ChartSetting& setting) {
+      return setting.knob == "hierarchy" && setting.value == "grids";
+    });
+  };
+  SceneTraits traits;
+  traits.triangles = true;
+  EXPECT_FALSE(tries_grids(traits));
+  traits.lattices = true;
+  EXPECT_TRUE(tries_grids(traits));
+
+  const auto traits_of = [](const ShapeKind& kind) {
+    SceneDescription scene;
+    scene.cameras.resize(1);
+    scene.shapes.resize(1);
+    scene.shapes[0].kind = kind;
+    Warnings warnings;
+    return scene_traits(prepare(std::move(scene), PrepareOptions(), warnings));
+  };
+  TerrainShape terrain;
+  terrain.triangles = 2000;
+  EXPECT_TRUE(traits_of(terrain).lattices);
+  EXPECT_FALSE(traits_of(SphereShape()).lattices);
 }
 
 }  // namespace
