@@ -120,6 +120,7 @@ class Bench {
       run_options.baseline = options_.against;
       run_options.filter = benchmarks::NameFilter(options_.filter);
       run_options.stop = &interruption.stop();
+      run_options.seam_watertight = options_.scene.edges != "fast";
       if (seconds > 0) run_options.seconds = std::max(0.1 * seconds, seconds - seconds_since(start));
       BenchReport report = benchmarks::run_bench(scene, rays, run_options);
       if (interruption.stop()) return;

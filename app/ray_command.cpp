@@ -79,6 +79,11 @@ std::optional<RayOptions> parse_ray_options(const Words& words) {
   if (vectors.size() != 2)
     throw usage_error(
         fmt::format("two vectors x,y,z follow the scene, origin and direction; {} given", vectors.size()));
+  for (const bool of_direction : {false, true})
+    for (int axis = 0; axis < 3; ++axis)
+      if (const Vec3f& v = vectors[of_direction ? 1 : 0]; std::abs(v[axis]) > kFarthestRay)
+        throw usage_error(fmt::format("the {} {},{},{} has a coordinate beyond 1e18",
+                                      of_direction ? "direction" : "origin", v.x, v.y, v.z));
   if (vectors[1] == Vec3f(0, 0, 0)) throw usage_error("the direction is 0,0,0");
   options.ray = {vectors[0], vectors[1], std::numeric_limits<float>::infinity(), false};
   if (!end.empty()) {

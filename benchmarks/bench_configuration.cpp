@@ -79,10 +79,10 @@ std::vector<BenchConfiguration> bench_configurations(const BenchSubject& subject
   return list;
 }
 
-BenchConfiguration counterpart(const BenchConfiguration& configuration) {
+BenchConfiguration counterpart(const BenchConfiguration& configuration, const BenchConfiguration& baseline) {
   BenchConfiguration same = configuration;
   same.tracer = BenchTracer::bare;
-  same.build = BenchSceneOptions();
+  same.build = baseline.tracer == BenchTracer::bare ? baseline.build : BenchSceneOptions();
   return same;
 }
 

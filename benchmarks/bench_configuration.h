@@ -45,8 +45,9 @@ struct BenchSubject {
 /// is kBenchBaseline.
 std::vector<BenchConfiguration> bench_configurations(const BenchSubject& subject);
 
-/// The baseline's scene asked by the same call: what a configuration that differs in its scene is measured beside.
-BenchConfiguration counterpart(const BenchConfiguration& configuration);
+/// The baseline's scene (the usual one where that is none of Embree's) asked by the same call: what a configuration
+/// that differs in its scene is measured beside.
+BenchConfiguration counterpart(const BenchConfiguration& configuration, const BenchConfiguration& baseline);
 
 /// Chooses rows by a regular expression (ECMAScript) that is found somewhere in their names; empty: all.
 class NameFilter {

@@ -41,10 +41,12 @@ Json row_json(const BenchRow& row) {
                {"checksum", fmt::format("{:016x}", row.checksum)},
                {"repeatable", row.repeatable},
                {"differ", row.differ},
-               {"may_differ", row.may_differ},
+               {"checked", row.checked},
+               {"wrong", row.wrong},
                {"suspicious", row.suspicious()},
                {"millions_per_second", spread_json(row.speed)},
                {"over_baseline", spread_json(row.ratio)}};
+  if (!row.wrong_example.empty()) json["wrong_example"] = row.wrong_example;
   if (!row.beside.empty()) json["beside"] = row.beside, json["over_beside"] = spread_json(row.beside_ratio);
   json["samples"] = row.samples;
   return json;
@@ -87,6 +89,14 @@ std::string builds_text(const BenchReport& report) {
   return text;
 }
 
+/// What the check in double says of a row's answers.
+std::string verdict_text(const BenchRow& row) {
+  if (row.wrong > 0)
+    return fmt::format("  OTHER ANSWERS ({} of {} checked are wrong, the first {})", with_commas(row.wrong),
+                       with_commas(row.checked), row.wrong_example);
+  return row.differ > 0 && row.checked == 0 ? "  not checked: no time" : "";
+}
+
 std::string rows_text(const BenchReport& report) {
   std::string text, kind;
   for (const BenchRow& row : report.rows) {
@@ -100,10 +110,7 @@ std::string rows_text(const BenchReport& report) {
         fmt::format("  {:<48} {:>8.3g} {:>13} {:>7.3g} {:>13} {:>6} {:>9} {:>9} {:>7}  {:016x}{}{}\n",
                     row.configuration, row.speed.median, range_text(row.speed), row.ratio.median, range_text(row.ratio),
                     beside, with_commas(row.rays), with_commas(row.hits), with_commas(row.differ), row.checksum,
-                    row.differ > row.may_differ
-                        ? fmt::format("  OTHER ANSWERS (up to {} are explained)", with_commas(row.may_differ))
-                        : "",
-                    row.repeatable ? "" : "  NOT THE SAME EACH TIME");
+                    verdict_text(row), row.repeatable ? "" : "  NOT THE SAME EACH TIME");
   }
   return text;
 }

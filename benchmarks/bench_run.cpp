@@ -3,24 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <memory>
 
+#include "benchmarks/bench_check.h"
+#include "benchmarks/bench_sample.h"
+#include "benchmarks/bench_tracers.h"
 #include "geometry/error.h"
-#include "geometry/sphere_bounded_intersector.h"
 #include "geometry/stopwatch.h"
 
 namespace raytree::benchmarks {
 namespace {
-
-/// Answers farther apart than this share of the distance are different ones; rounding moves a distance by far less but
-/// where rays graze.
-constexpr float kSameDistance = 0x1p-10f;
-
-/// Builds are repeated while all of them together take less than this, up to kMostBuilds.
-constexpr double kRebuildSeconds = 0.5;
-constexpr int kMostBuilds = 3;
 
 /// Seconds that building takes beside medium quality's: what decides whether there is time for it.
 double build_effort(const BenchConfiguration& configuration) {
@@ -34,33 +27,15 @@ double build_effort(const BenchConfiguration& configuration) {
   return effort;
 }
 
-/// Share of a kind's rays that may get another answer for the configuration's own reasons. Robust ones over the same
-/// triangles differ where rounding decides on which side of an outline a ray passes: one in ten thousand, as
-/// bare_trace.h has it; rays aimed at edges are at an outline whenever the edge is one, and without watertight edges
-/// they pass between two triangles too. The naive tracer's rays are few and its arithmetic is another.
-double differing_share(const BenchConfiguration& configuration, const std::string& rays) {
-  // Grids halve quads their own way: another surface, off by what a quad is not flat, and many of the rays that leave
-  // the old one find themselves on the new one's other side.
-  if (configuration.build.geometry == BenchGeometry::grids) return 0.3;
-  const bool same = configuration.tracer != BenchTracer::naive && configuration.build.robust;
-  if (rays == "edge") return same ? 0.01 : 0.1;
-  if (rays == "file") return same ? 1e-3 : 1e-2;
-  return same ? 3e-4 : 3e-3;
-}
-constexpr double kAlwaysMayDiffer = 2;
+/// Seconds a triangle that the check's hierarchy takes, and the share of the time left that it may have.
+constexpr double kCheckSecondsEach = 1e-6;
+constexpr double kCheckShare = 0.3;
+
+/// Of the rays that all answer alike, so many of the baseline's are checked too.
+constexpr std::size_t kAlwaysChecked = 256;
 
 /// Repetitions that quartiles can be made of; fewer are not worth their time.
 constexpr int kLeastRepetitions = 3;
-
-/// Rays of each batch where all of them together are fewer than one batch: a packet.
-constexpr std::size_t kFewOfBatch = 8;
-
-/// What answers a configuration's rays.
-struct Asked {
-  std::unique_ptr<const EmbreeBenchScene> bare;
-  std::unique_ptr<const RayIntersector> own;
-  const RayIntersector* seam = nullptr;
-};
 
 class BenchRun {
  public:
@@ -75,10 +50,10 @@ class BenchRun {
     subject_.meshes = report_.triangles > 0;
     subject_.threads = options.threads;
     subject_.primitives = static_cast<double>(report_.primitives());
+    subject_.widest_call = EmbreeBenchScene::widest_call();
   }
 
   std::vector<std::string> names() {
-    build_base();
     std::vector<std::string> names;
     for (const BenchRays& kind : rays_)
       for (const BenchConfiguration& configuration : configurations_of(kind))
@@ -88,6 +63,7 @@ class BenchRun {
 
   BenchReport run() {
     if (rays_.empty()) throw Error(ErrorKind::failure, {}, "no ray of the scene meets anything: nothing to measure");
+    find_baseline();
     build_base();
     std::vector<std::string> scenes;  // in the order of configurations
     for (const BenchRays& kind : rays_)
@@ -97,8 +73,8 @@ class BenchRun {
         if (std::find(scenes.begin(), scenes.end(), name) == scenes.end()) scenes.push_back(name), weights_[name] = 0;
         weights_[name] += 1;
       }
-    find_baseline();
     for (std::size_t i = 0; i < scenes.size() && !stopped(); ++i) measure_scene(scenes, i);
+    blame_baseline();
     // As they were asked for: by kind of rays, then by configuration.
     std::stable_sort(report_.rows.begin(), report_.rows.end(), [&](const BenchRow& a, const BenchRow& b) {
       const auto place = [&](const BenchRow& row) {
@@ -112,14 +88,17 @@ class BenchRun {
  private:
   struct Subject {
     BenchConfiguration configuration;
-    const Asked* asked;
+    const BuiltTracer* asked;
     bool reported;
     BenchRow row;
     std::vector<double> seconds;
+    std::vector<float> answers;
+
+    int threads(int of_run) const { return configuration.threads > 0 ? configuration.threads : of_run; }
   };
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
-  double seconds_left() const { return options_.seconds - seconds_since(start_); }
+  double seconds_left() const { return std::max(0.0, options_.seconds - seconds_since(start_)); }
 
   void count(const BoundedShapes& shapes) {
     for (const MeshEntry& entry : shapes.meshes) report_.triangles += entry.mesh.triangle_count();
@@ -127,18 +106,10 @@ class BenchRun {
   }
 
   std::vector<BenchConfiguration> configurations_of(const BenchRays& kind) const {
+    if (!options_.configurations.empty()) return options_.configurations;
     BenchSubject subject = subject_;
     subject.coherent = kind.rays.coherence == Coherence::coherent;
     return bench_configurations(subject);
-  }
-
-  /// The scene that the default baseline and all counterparts ask.
-  void build_base() {
-    if (base_.bare) return;
-    base_ = build(BenchConfiguration());
-    for (const int width : {4, 8, 16})
-      if (base_.bare->has_native(width)) subject_.widest_call = width;
-    if (!base_.bare->has_native(4)) subject_.widest_call = 1;
   }
 
   void find_baseline() {
@@ -146,7 +117,6 @@ class BenchRun {
       for (const BenchConfiguration& configuration : configurations_of(kind))
         if (configuration.name() == options_.baseline) {
           baseline_ = configuration;
-          if (configuration.scene_name() != BenchConfiguration().scene_name()) other_baseline_ = build(configuration);
           return;
         }
     throw Error(ErrorKind::bad_input, {},
@@ -155,62 +125,41 @@ class BenchRun {
                             options_.baseline));
   }
 
-  Asked build(const BenchConfiguration& configuration) {
-    Asked asked;
-    BenchBuild built;
-    built.scene = configuration.scene_name();
-    std::vector<double> seconds;
-    const auto start = Clock::now();
-    if (configuration.tracer == BenchTracer::seam) {
-      asked.seam = scene_.intersector.get();
-      seconds.push_back(scene_.seconds.build);
-    } else if (configuration.tracer == BenchTracer::naive) {
-      SphereBoundedOptions spheres;
-      spheres.stop = options_.stop;
-      asked.own = std::make_unique<SphereBoundedIntersector>(*scene_.shapes, spheres);
-      asked.seam = asked.own.get();
-      seconds.push_back(seconds_since(start));
-    } else {
-      BenchSceneOptions options = configuration.build;
-      options.threads = options_.threads, options.stop = options_.stop;
-      do {
-        asked.bare.reset();
-        asked.bare = std::make_unique<EmbreeBenchScene>(*scene_.shapes, options);
-        seconds.push_back(asked.bare->build_seconds());
-        if (base_effort_seconds_ == 0) base_effort_seconds_ = seconds_since(start);
-      } while (seconds.size() < kMostBuilds && seconds_since(start) < kRebuildSeconds);
-    }
-    built.bytes = asked.bare ? asked.bare->memory_bytes() : asked.seam->memory_bytes();
-    built.peak_bytes = asked.bare ? asked.bare->peak_memory_bytes() : asked.seam->peak_memory_bytes();
-    if (asked.bare) built.triangles_per_primitive = asked.bare->triangles_per_primitive();
-    built.seconds = spread_of(std::move(seconds));
-    report_.builds.push_back(built);
-    return asked;
+  /// The scenes that the baseline and all counterparts ask.
+  void build_base() {
+    base_scene_ = counterpart(baseline_, baseline_).scene_name();
+    base_ = built(counterpart(baseline_, baseline_));
+    base_seconds_ = base_.first_seconds;
+    if (baseline_.tracer != BenchTracer::bare) own_baseline_ = built(baseline_);
+  }
+
+  BuiltTracer built(const BenchConfiguration& configuration) {
+    BuiltTracer tracer = build_tracer(scene_, configuration, options_.threads, options_.stop);
+    report_.builds.push_back(tracer.build);
+    return tracer;
   }
 
   void measure_scene(const std::vector<std::string>& scenes, std::size_t at) {
     const std::string& name = scenes[at];
     double weight_left = 0;
     for (std::size_t i = at; i < scenes.size(); ++i) weight_left += weights_[scenes[i]];
-    double seconds = options_.seconds > 0 ? std::max(0.0, seconds_left()) * weights_[name] / weight_left : 0;
+    double seconds = options_.seconds > 0 ? seconds_left() * weights_[name] / weight_left : 0;
     const auto start = Clock::now();
     const BenchConfiguration first = first_of(name);
-    Asked own;
-    const Asked* asked = &base_;
-    if (name != BenchConfiguration().scene_name()) {
-      const double expected = first.tracer == BenchTracer::seam ? 0 : base_effort_seconds_ * build_effort(first);
-      if (options_.seconds > 0 && expected > 0.5 * std::max(0.0, seconds_left())) {
-        report_.left_out.push_back({name, fmt::format("building it would take some {:.2g} s, {:.2g} s were left",
-                                                      expected, std::max(0.0, seconds_left()))});
+    BuiltTracer own;
+    const BuiltTracer* asked = name == base_scene_ ? &base_ : &own_baseline_;
+    if (name != base_scene_ && name != baseline_.scene_name()) {
+      const double expected = first.tracer == BenchTracer::seam ? 0 : base_seconds_ * build_effort(first);
+      if (options_.seconds > 0 && expected > 0.5 * seconds_left()) {
+        report_.left_out.push_back(
+            {name, fmt::format("building it would take some {:.2g} s, {:.2g} s were left", expected, seconds_left())});
         return;
       }
-      if (other_baseline_.bare || other_baseline_.seam != nullptr) asked = &other_baseline_;
-      if (asked == &base_ || baseline_.scene_name() != name) {
-        own = build(first);
-        asked = &own;
-      }
+      own = built(first);
+      asked = &own;
     }
     if (seconds > 0) seconds = std::max(0.2 * seconds, seconds - seconds_since(start));
+    surface_check_.reset();
     for (const BenchRays& kind : rays_)
       if (!stopped()) measure_kind(kind, name, *asked, seconds / static_cast<double>(rays_.size()));
   }
@@ -223,9 +172,8 @@ class BenchRun {
   }
 
   /// The baseline, what stands beside the rows, and the rows that the filter takes of one scene.
-  std::vector<Subject> subjects_of(const BenchRays& kind, const std::string& scene_name, const Asked& asked) {
-    const bool default_scene = baseline_.scene_name() == BenchConfiguration().scene_name();
-    std::vector<Subject> subjects{{baseline_, default_scene ? &base_ : &other_baseline_, false, {}, {}}};
+  std::vector<Subject> subjects_of(const BenchRays& kind, const std::string& scene_name, const BuiltTracer& asked) {
+    std::vector<Subject> subjects{{baseline_, own_baseline_ ? &own_baseline_ : &base_, false, {}, {}, {}}};
     const auto place = [&](const BenchConfiguration& configuration) {
       return std::find_if(subjects.begin(), subjects.end(),
                           [&](const Subject& subject) { return subject.configuration.name() == configuration.name(); });
@@ -233,138 +181,43 @@ class BenchRun {
     for (const BenchConfiguration& configuration : configurations_of(kind)) {
       if (configuration.scene_name() != scene_name) continue;
       if (!options_.filter.takes(kind.name + "/" + configuration.name())) continue;
-      const BenchConfiguration same_call = counterpart(configuration);
+      const BenchConfiguration same_call = counterpart(configuration, baseline_);
       const bool beside = configuration.tracer == BenchTracer::bare && same_call.name() != configuration.name();
-      if (beside && place(same_call) == subjects.end()) subjects.push_back({same_call, &base_, false, {}, {}});
+      if (beside && place(same_call) == subjects.end()) subjects.push_back({same_call, &base_, false, {}, {}, {}});
       if (const auto found = place(configuration); found != subjects.end()) {
         found->reported = true;
         continue;
       }
-      subjects.push_back({configuration, &asked, true, {}, {}});
+      subjects.push_back({configuration, &asked, true, {}, {}, {}});
       if (beside && same_call.name() != baseline_.name()) subjects.back().row.beside = same_call.name();
     }
     return subjects;
   }
 
-  PassResult pass(const Subject& subject, const BenchRays& kind, const LookAtBatch& look = {}) const {
-    const int threads = subject.configuration.threads > 0 ? subject.configuration.threads : options_.threads;
-    if (subject.asked->seam != nullptr)
-      return timed_pass(
-          kind.rays, threads,
-          [&](std::size_t batch, HitBatch& hits, std::uint8_t* occluded) {
-            return ask_tracer<RunningTime>(*subject.asked->seam, kind.rays, batch, hits, occluded);
-          },
-          look);
-    const RaySet& rays = kind.bare();
-    return timed_pass(
-        rays, threads,
-        [&](std::size_t batch, HitBatch& hits, std::uint8_t* occluded) {
-          const RayBatch& asked = rays.batches[batch];
-          const BenchCall call = subject.configuration.call;
-          const double seconds = rays.occlusion ? subject.asked->bare->occluded(asked, call, occluded)
-                                                : subject.asked->bare->intersect(asked, call, hits);
-          if (!kind.plane_distance.empty()) {
-            const std::vector<float>& planes = kind.plane_distance[batch];
-            for (std::size_t i = 0; i < asked.size; ++i) {
-              if (planes[i] == kInfinity) continue;
-              occluded[i] = 1;
-              if (!rays.occlusion && hits.geometry[i] == kNoGeometry) hits.set(i, {kPlaneGeometry, 0, 0, 0, planes[i]});
-            }
-          }
-          return seconds;
-        },
-        look);
+  PassResult pass(const Subject& subject, const BenchRays& kind) const {
+    return ask_all(*subject.asked, subject.configuration.call, kind, subject.threads(options_.threads));
   }
 
-  /// Distances of a pass's hits, infinite for misses, 0 for occluded rays.
-  std::vector<float> answers_of(const Subject& subject, const BenchRays& kind, PassResult& result) const {
-    std::vector<float> answers(kind.rays.batches.size() * kBenchmarkBatch, kInfinity);
-    result = pass(subject, kind, [&](std::size_t batch, const HitBatch& hits, const std::uint8_t* occluded) {
-      for (std::size_t i = 0; i < kind.rays.batches[batch].size; ++i) {
-        float& answer = answers[batch * kBenchmarkBatch + i];
-        if (kind.rays.occlusion)
-          answer = occluded[i] != 0 ? 0 : kInfinity;
-        else if (hits.geometry[i] != kNoGeometry)
-          answer = hits.distance[i];
-      }
-    });
-    return answers;
-  }
-
-  static std::uint64_t different(const std::vector<float>& a, const std::vector<float>& b) {
-    std::uint64_t count = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      if (a[i] == b[i]) continue;
-      count += !(std::abs(a[i] - b[i]) <= kSameDistance * std::max(a[i], b[i]));
-    }
-    return count;
-  }
-
-  static BenchRays part_of(const BenchRays& kind, std::size_t batches, std::size_t most_of_batch) {
-    BenchRays part;
-    part.name = kind.name;
-    const auto take = [&](const RaySet& from, RaySet& to) {
-      to.coherence = from.coherence, to.occlusion = from.occlusion;
-      const std::size_t count = from.batches.size(), taken = std::min(count, batches);
-      for (std::size_t k = 0; k < taken; ++k) {
-        const RayBatch& batch = from.batches[k * count / taken];
-        RayBatch& copy = to.batches.emplace_back(kBenchmarkBatch);
-        for (std::size_t i = 0; i < std::min(batch.size, most_of_batch); ++i)
-          copy.push(batch.origin(i), batch.direction(i), batch.max_distance[i]);
-      }
-    };
-    take(kind.rays, part.rays);
-    if (!kind.plane_distance.empty()) {
-      take(kind.without_planes, part.without_planes);
-      const std::size_t count = kind.plane_distance.size(), taken = std::min(count, batches);
-      for (std::size_t k = 0; k < taken; ++k) part.plane_distance.push_back(kind.plane_distance[k * count / taken]);
-    }
-    return part;
-  }
-
-  /// As many of a kind's rays as there is time for: powers of two of batches, or of rays of one batch, so that two runs
-  /// with about the same time take the same rays.
-  BenchRays fitting_part(const BenchRays& kind, const std::vector<Subject>& subjects, double seconds) const {
-    const bool naive = std::any_of(subjects.begin(), subjects.end(), [](const Subject& subject) {
-      return subject.configuration.tracer == BenchTracer::naive;
-    });
-    // Few rays are a few of many batches, so that they are the picture's, not a corner's.
-    const auto few = [&](std::size_t rays) { return part_of(kind, rays / kFewOfBatch, kFewOfBatch); };
-    if (seconds <= 0) return naive ? few(kNaiveRays) : part_of(kind, kBenchBatches, kBenchmarkBatch);
-    const BenchRays trial = naive ? few(2 * kFewOfBatch) : part_of(kind, 2, kBenchmarkBatch);
-    double round = 0;
-    for (int i = 0; i < 2; ++i) {  // the second counts: the first finds cold caches
-      const auto start = Clock::now();
-      for (const Subject& subject : subjects) pass(subject, trial);
-      round = seconds_since(start);
-    }
-    double rays = seconds / ((options_.repetitions + 1) * round / static_cast<double>(trial.rays.size()));
-    rays = std::exp2(std::floor(std::log2(std::max(rays, 16.0))));
-    if (rays < double(kBenchmarkBatch)) return few(static_cast<std::size_t>(rays));
-    return part_of(kind, static_cast<std::size_t>(std::min(rays, 1e9)) / kBenchmarkBatch, kBenchmarkBatch);
-  }
-
-  void measure_kind(const BenchRays& all, const std::string& scene_name, const Asked& asked, double seconds) {
+  void measure_kind(const BenchRays& all, const std::string& scene_name, const BuiltTracer& asked, double seconds) {
     std::vector<Subject> subjects = subjects_of(all, scene_name, asked);
     if (std::none_of(subjects.begin(), subjects.end(), [](const Subject& subject) { return subject.reported; })) return;
-    const BenchRays kind = fitting_part(all, subjects, seconds);
-    std::vector<float> reference;
+    RayBudget budget{seconds, options_.repetitions, false};
+    for (const Subject& subject : subjects) budget.naive |= subject.configuration.tracer == BenchTracer::naive;
+    const BenchRays kind = fitting_part(all, budget, [&](const BenchRays& trial) {
+      for (const Subject& subject : subjects) pass(subject, trial);
+    });
     for (Subject& subject : subjects) {
-      PassResult result;
-      const std::vector<float> answers = answers_of(subject, kind, result);
-      if (reference.empty()) reference = answers;
+      const int threads = subject.threads(options_.threads);
+      BenchAnswers answers = answers_of(*subject.asked, subject.configuration.call, kind, threads);
+      subject.answers = std::move(answers.distances);
       BenchRow& row = subject.row;
       row.rays_name = kind.name;
       row.configuration = subject.configuration.name();
-      row.threads = subject.configuration.threads > 0 ? subject.configuration.threads : options_.threads;
+      row.threads = threads;
       row.rays = kind.rays.size();
-      row.hits = result.hits, row.checksum = result.checksum;
-      row.differ = different(reference, answers);
-      // What either side explains: of two configurations the more careless one.
-      const double share =
-          std::max(differing_share(subject.configuration, kind.name), differing_share(baseline_, kind.name));
-      row.may_differ = static_cast<std::uint64_t>(kAlwaysMayDiffer + share * static_cast<double>(row.rays));
+      row.hits = answers.pass.hits, row.checksum = answers.pass.checksum;
     }
+    check_answers(subjects, kind);
     const auto start = Clock::now();
     for (int repetition = 0; repetition < options_.repetitions && !stopped(); ++repetition) {
       // What the trial foretold may not have come: a machine that is busy with other things.
@@ -376,6 +229,64 @@ class BenchRun {
       }
     }
     finish_rows(subjects);
+  }
+
+  /// Where answers differ from the baseline's, both are asked about in double; of the baseline's some others too.
+  void check_answers(std::vector<Subject>& subjects, const BenchRays& kind) {
+    const std::vector<float>& reference = subjects.front().answers;
+    std::vector<bool> of_baseline(reference.size(), false);
+    const std::size_t step = std::max<std::size_t>(1, kind.rays.size() / kAlwaysChecked);
+    std::vector<std::vector<std::size_t>> rays(subjects.size());
+    for (std::size_t batch = 0, count = 0; batch < kind.rays.batches.size(); ++batch)
+      for (std::size_t i = 0; i < kind.rays.batches[batch].size; ++i, ++count) {
+        const std::size_t at = batch * kBenchmarkBatch + i;
+        of_baseline[at] = count % step == 0;
+        for (std::size_t s = 1; s < subjects.size(); ++s)
+          if (differs(reference[at], subjects[s].answers[at])) rays[s].push_back(at), of_baseline[at] = true;
+      }
+    for (std::size_t at = 0; at < of_baseline.size(); ++at)
+      if (of_baseline[at]) rays[0].push_back(at);
+    for (std::size_t s = 0; s < subjects.size(); ++s) {
+      Subject& subject = subjects[s];
+      if (s > 0) subject.row.differ = rays[s].size();
+      if (rays[s].empty()) continue;
+      const BenchCheck* check = check_of(*subject.asked);
+      if (check == nullptr) continue;
+      BenchConfiguration configuration = subject.configuration;
+      if (configuration.tracer == BenchTracer::seam) configuration.build.robust = options_.seam_watertight;
+      const CheckedAnswers answers = check->check(configuration, *subject.asked, kind, subject.answers, rays[s]);
+      subject.row.checked = answers.checked, subject.row.wrong = answers.wrong;
+      subject.row.wrong_example = answers.example;
+    }
+    const BenchRow& baseline = subjects.front().row;
+    if (baseline.wrong > 0) wrong_baselines_.emplace(kind.name, baseline);
+  }
+
+  /// The baseline is asked again beside every scene: what is wrong with it is said in its row, or, where that was not
+  /// asked for, in all rows that it stands behind.
+  void blame_baseline() {
+    for (const auto& [kind, baseline] : wrong_baselines_) {
+      const auto own = std::find_if(report_.rows.begin(), report_.rows.end(),
+                                    [&, &wrong = baseline](const BenchRow& row) { return row.name() == wrong.name(); });
+      for (BenchRow& row : report_.rows) {
+        if (row.rays_name != kind || row.wrong > 0 || (own != report_.rows.end() && &row != &*own)) continue;
+        row.checked = baseline.checked, row.wrong = baseline.wrong;
+        row.wrong_example = (own != report_.rows.end() ? "" : "the baseline: ") + baseline.wrong_example;
+      }
+    }
+  }
+
+  /// The truth about what a tracer traces, made when it is first asked for; null: there is no time for it.
+  const BenchCheck* check_of(const BuiltTracer& tracer) {
+    const bool grids = tracer.bare && tracer.bare->has_own_surface();
+    std::unique_ptr<const BenchCheck>& check = grids ? surface_check_ : check_;
+    if (check) return check.get();
+    if (options_.seconds > 0 && subject_.primitives * kCheckSecondsEach > kCheckShare * seconds_left()) return nullptr;
+    if (grids)
+      check = std::make_unique<const BenchCheck>(tracer.bare->surface());
+    else
+      check = std::make_unique<const BenchCheck>(*scene_.shapes);
+    return check.get();
   }
 
   void finish_rows(std::vector<Subject>& subjects) {
@@ -405,9 +316,12 @@ class BenchRun {
   const Clock::time_point start_;
   BenchSubject subject_;
   BenchConfiguration baseline_;
-  Asked base_, other_baseline_;
-  double base_effort_seconds_ = 0;         ///< one build of the base scene
-  std::map<std::string, double> weights_;  ///< rows of each scene
+  std::string base_scene_;
+  BuiltTracer base_, own_baseline_;
+  std::unique_ptr<const BenchCheck> check_, surface_check_;  ///< of the scene's triangles; of one scene's grids
+  std::map<std::string, BenchRow> wrong_baselines_;          ///< of kinds of rays
+  double base_seconds_ = 0;                                  ///< one build of the base scene
+  std::map<std::string, double> weights_;                    ///< rows of each scene
   BenchReport report_;
 };
 

@@ -45,7 +45,10 @@ struct BenchRunOptions {
   /// for kBenchBatches of each kind.
   double seconds = 0;
   std::string baseline = kBenchBaseline;
+  /// Configurations of every kind of rays, the baseline among them; none: bench_configurations().
+  std::vector<BenchConfiguration> configurations;
   NameFilter filter = NameFilter("");
+  bool seam_watertight = true;  ///< PrepareOptions::watertight of the scene: what the seam's answers are held to
   const std::atomic<bool>* stop = nullptr;
 };
 
@@ -56,16 +59,20 @@ struct BenchRow {
   std::size_t rays = 0;
   std::uint64_t hits = 0, checksum = 0;  ///< of its own answers, whatever the threads
   std::uint64_t differ = 0;  ///< rays whose answer is another than the baseline's: hit or not, or a thousandth farther
-  std::uint64_t may_differ = 0;  ///< how many of them the configuration explains
-  bool repeatable = true;        ///< every repetition gave the same checksum
-  Spread speed;                  ///< million rays a second
-  Spread ratio;                  ///< speed over the baseline's, repetition by repetition
-  std::string beside;            ///< configuration that differs in the scene alone; empty: the baseline, or none
+  /// Rays that were asked again in double: those that differ (of the baseline, from anything's; and some of its
+  /// others), 0 where there was no time for it. And those of them whose answer no rounding of the configuration's
+  /// arithmetic makes.
+  std::uint64_t checked = 0, wrong = 0;
+  std::string wrong_example;  ///< the first of these: origin, direction, what it got, what is true
+  bool repeatable = true;     ///< every repetition gave the same checksum
+  Spread speed;               ///< million rays a second
+  Spread ratio;               ///< speed over the baseline's, repetition by repetition
+  std::string beside;         ///< configuration that differs in the scene alone; empty: the baseline, or none
   Spread beside_ratio;
   std::vector<double> samples;  ///< million rays a second, one a repetition
 
   std::string name() const { return rays_name + "/" + configuration; }
-  bool suspicious() const { return differ > may_differ || !repeatable; }
+  bool suspicious() const { return wrong > 0 || !repeatable; }
 };
 
 struct BenchBuild {

@@ -70,6 +70,15 @@ void write_text(const std::string& name, const std::string& text) {
   if (!file.flush()) throw Error(ErrorKind::failure, {name, 0, ""}, "cannot be written");
 }
 
+/// Measuring takes minutes: that a result has no place is said before. Throws Error (bad_input).
+void check_output(const char* flag, const std::string& name) {
+  if (name.empty()) return;
+  const bool is_new = !std::filesystem::exists(name);
+  if (!std::ofstream(name, std::ios::app))
+    throw Error(ErrorKind::bad_input, {name, 0, ""}, fmt::format("{}: the file cannot be written", flag));
+  if (is_new) std::filesystem::remove(name);
+}
+
 /// What the figures were measured on: name and value, in the order of printing.
 std::vector<std::pair<std::string, std::string>> machine_lines() {
   const Machine here = machine();
@@ -94,6 +103,10 @@ std::vector<Figure> measured(const Row& row, const MeasureContext& context) {
 
 int measure(const std::vector<const Row*>& rows, const Outputs& outputs) {
   const Row* const charted = outputs.chart.empty() ? nullptr : &charted_row(rows);
+  if (charted != nullptr && std::filesystem::path(outputs.chart).extension() != ".svg")
+    throw Error(ErrorKind::bad_input, {outputs.chart, 0, ""}, "--chart writes SVG: the file's name ends in .svg");
+  check_output("--chart", outputs.chart);
+  check_output("--json", outputs.json);
   const ScratchFolder scratch;
   const MeasureContext context{std::filesystem::read_symlink("/proc/self/exe").parent_path(), scratch.path(),
                                [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }};

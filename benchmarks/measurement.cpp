@@ -35,6 +35,8 @@ std::string with_unit(const std::string& text, const std::string& unit) {
 
 std::string bound_text(const Figure& figure) {
   if (figure.kind == BoundKind::none) return "";
+  if (figure.kind == BoundKind::within)
+    return fmt::format("{} to {}", number(figure.bound), with_unit(number(figure.upper), figure.unit));
   std::string text =
       (figure.kind == BoundKind::at_least ? ">= " : "<= ") + with_unit(number(figure.bound), figure.unit);
   if (std::isfinite(figure.chase)) text += fmt::format(" (chase {})", number(figure.chase));
@@ -84,6 +86,7 @@ bool Figure::holds() const {
   // Not a number falls short of any bound.
   if (kind == BoundKind::at_least) return measured.median >= bound;
   if (kind == BoundKind::at_most) return measured.median <= bound;
+  if (kind == BoundKind::within) return measured.high * (1 + noise) >= bound && measured.low / (1 + noise) <= upper;
   return true;
 }
 
@@ -116,7 +119,9 @@ std::string figures_json(const std::vector<std::pair<std::string, std::string>>&
     line["low"] = figure.measured.low;
     line["high"] = figure.measured.high;
     line["count"] = figure.measured.count;
-    if (figure.kind != BoundKind::none)
+    if (figure.kind == BoundKind::within)
+      line["within"] = {figure.bound, figure.upper};
+    else if (figure.kind != BoundKind::none)
       line[figure.kind == BoundKind::at_least ? "at_least" : "at_most"] = figure.bound;
     line["holds"] = figure.holds();
     if (!figure.problem.empty()) line["problem"] = figure.problem;

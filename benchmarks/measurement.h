@@ -31,7 +31,7 @@ struct PairedSpread {
 PairedSpread measure_pairs(const std::function<double()>& a, const std::function<double()>& b,
                            const PairLimits& limits);
 
-enum class BoundKind { none, at_least, at_most };
+enum class BoundKind { none, at_least, at_most, within };
 
 /// Where a figure stands in its row's chart.
 struct ChartPlace {
@@ -48,6 +48,10 @@ struct Figure {
   Spread measured;
   BoundKind kind = BoundKind::none;
   double bound = 0;
+  double upper = 0;  ///< of `within`: from `bound` to this
+  /// Of `within`: what the figure is off by for no reason of its own, as a share; it holds where its quartiles, widened
+  /// by this, reach the interval.
+  double noise = 0;
   double chase = std::numeric_limits<double>::quiet_NaN();  ///< what is aimed at beyond the bound; NaN: nothing
   std::string note;                                         ///< what lies behind the figure; printed under the table
   std::string problem;  ///< why there is no figure, or why it does not count; empty: it does

@@ -11,6 +11,7 @@
 
 #include "geometry/error.h"
 #include "geometry/mapped_file.h"
+#include "geometry/ray_batch.h"
 
 namespace raytree::benchmarks {
 namespace {
@@ -59,6 +60,8 @@ FileRay ray_of(const float* row, std::size_t columns, std::uint64_t index, const
   const auto refuse_row = [&](const char* why) { refuse(name, fmt::format("row {}: {}", index, why)); };
   for (std::size_t i = 0; i < 6; ++i)
     if (!std::isfinite(row[i])) refuse_row(i < 3 ? "the origin is not finite" : "the direction is not finite");
+  for (std::size_t i = 0; i < 3; ++i)
+    if (std::abs(row[i]) > kFarthestRay) refuse_row("the origin is farther than 1e18 units away");
   const Vec3d direction(row[3], row[4], row[5]);
   // In double: the length of a direction of floats neither overflows nor vanishes.
   const double length = std::sqrt(direction.dot(direction));
@@ -72,7 +75,7 @@ FileRay ray_of(const float* row, std::size_t columns, std::uint64_t index, const
     if (!(row[7] >= row[6])) refuse_row("its end is not a number at or behind its begin");
     ray.begin = static_cast<float>(row[6] * length);
     ray.end = static_cast<float>(row[7] * length);
-    if (!std::isfinite(ray.begin)) refuse_row("its begin is farther away than a float can say");
+    if (!(ray.begin <= kFarthestRay)) refuse_row("its begin is farther than 1e18 units away");
   }
   return ray;
 }

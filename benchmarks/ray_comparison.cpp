@@ -42,12 +42,17 @@ Hit RayJudge::ask_tracer(const ComparedRay& ray) const {
   return hits[0];
 }
 
+SurfaceBounds RayJudge::bounds_of(const ShapeSet& shapes, const ComparedRay& ray, const SurfaceId& id,
+                                  double near) const {
+  return surface_bounds(shapes, ray.origin, ray.direction, id, near, arithmetic_);
+}
+
 /// The truth's hit, before `end` of the fast tracer's, was not reported. So were all that follow it up to there.
 RayComparison RayJudge::missed(const ComparedRay& ray, const ReferenceHit& found, double end, double end_error) const {
   RayComparison first{};
   ReferenceHit next = found;
   for (int passed = 0; passed < kMostPassed; ++passed) {
-    const SurfaceBounds bounds = surface_bounds(truth_shapes_, ray.origin, ray.direction, id_of(next), next.distance);
+    const SurfaceBounds bounds = bounds_of(truth_shapes_, ray, id_of(next), next.distance);
     RayVerdict verdict = excuse(bounds);
     if (verdict == RayVerdict::agree && next.distance + bounds.distance_error + end_error >= end)
       verdict = RayVerdict::coplanar;
@@ -70,7 +75,7 @@ RayComparison RayJudge::extra(const ComparedRay& ray, const SurfaceBounds& bound
     double end = ray.max_distance, end_error = 0;
     if (found.hit()) {
       end = found.distance;
-      end_error = surface_bounds(truth_shapes_, ray.origin, ray.direction, id_of(found), end).distance_error;
+      end_error = bounds_of(truth_shapes_, ray, id_of(found), end).distance_error;
     }
     verdict = bounds.distance + bounds.distance_error + end_error >= end ? RayVerdict::coplanar : RayVerdict::defect;
   }
@@ -119,7 +124,7 @@ RayComparison RayJudge::nearest_on_facets(const ComparedRay& ray, const Hit& hit
   const bool hits = hit.geometry != kNoGeometry;
   if (!hits && !found.hit()) return {};
   if (!hits) return missed(ray, found, ray.max_distance, 0);
-  const SurfaceBounds bounds = surface_bounds(shapes_, ray.origin, ray.direction, id_of(hit), hit.distance);
+  const SurfaceBounds bounds = bounds_of(shapes_, ray, id_of(hit), hit.distance);
   // No truth is needed to tell wrong weights; where the ray grazes, they have no bound.
   if (hit.geometry >= kFirstMeshGeometry && !bounds.grazing &&
       std::max(std::abs(hit.u - bounds.u), std::abs(hit.v - bounds.v)) > bounds.weight_error)
@@ -141,7 +146,7 @@ RayComparison RayJudge::nearest_on_facets(const ComparedRay& ray, const Hit& hit
         (deviation.distance > 0 || (Vec3d(normal) - found.normal).length() <= bounds.normal_error))
       return {RayVerdict::agree, off / ulp(hit.distance), bounds.edge_distance,
               bounds.edge_error, bounds.distance_error,   bounds.position_error};
-    const SurfaceBounds own = surface_bounds(truth_shapes_, ray.origin, ray.direction, id_of(found), found.distance);
+    const SurfaceBounds own = bounds_of(truth_shapes_, ray, id_of(found), found.distance);
     const RayVerdict verdict = excuse(own);
     return comparison(verdict == RayVerdict::agree ? RayVerdict::defect : verdict, own);
   }
@@ -163,26 +168,45 @@ RayComparison RayJudge::occlusion(const ComparedRay& ray, bool occluded, const R
   const Hit hit = ask_tracer(ray);
   if (hit.geometry != kNoGeometry) return nearest(ray, hit, found);
   RayComparison result;
-  result.verdict = is_near_outline(ray) ? RayVerdict::edge : RayVerdict::defect;
+  result.verdict = is_near_outline(ray, 0, ray.max_distance) ? RayVerdict::edge : RayVerdict::defect;
   return result;
 }
 
-/// Whether the outline of something lies within its bound of the ray: looked for with rays that start beside it.
-bool RayJudge::is_near_outline(const ComparedRay& ray) const {
-  const Vec3d direction(ray.direction);
+/// Whether the outline of something that lies `begin` to `end` away is within its bound of the ray: looked for with
+/// rays that start beside it.
+bool RayJudge::is_near_outline(const ComparedRay& ray, double begin, double end) const {
+  const Vec3d direction(ray.direction), start = Vec3d(ray.origin) + direction * begin;
   const Vec3d u = (std::abs(direction.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)).cross(direction).normalized();
   const Vec3d v = direction.cross(u);
   const double origin = Vec3d(ray.origin).length();
-  const double reach = origin + (std::isfinite(ray.max_distance) ? double(ray.max_distance) : origin);
+  const double reach = origin + (std::isfinite(end) ? end : origin);
   for (const double step : {0x1p-24, 0x1p-22, 0x1p-20, 0x1p-18})
     for (const Vec3d& way : {u, -u, v, -v, u + v, u - v, v - u, -u - v}) {
-      const ReferenceHit beside = truth_.nearest(Vec3d(ray.origin) + way * (step * reach), direction, ray.max_distance);
+      const ReferenceHit beside = truth_.nearest(start + way * (step * reach), direction, end - begin);
       if (!beside.hit()) continue;
-      const SurfaceBounds bounds =
-          surface_bounds(truth_shapes_, ray.origin, ray.direction, id_of(beside), beside.distance);
+      const SurfaceBounds bounds = bounds_of(truth_shapes_, ray, id_of(beside), begin + beside.distance);
       if (bounds.grazing || bounds.side == SurfaceBounds::Side::uncertain) return true;
     }
   return false;
+}
+
+bool RayJudge::is_possible(const ComparedRay& ray, float distance, double share) const {
+  const bool hits = distance < kInfinity;
+  if (ray.occlusion && hits) return ask_truth(ray).hit() || is_near_outline(ray, 0, ray.max_distance);
+  // Nothing that is certain may lie before it.
+  const double before = hits ? distance * (1 - share) : double(ray.max_distance);
+  const Vec3d origin(ray.origin), direction(ray.direction);
+  const ReferenceHit nearer = truth_.nearest(origin, direction, before);
+  if (nearer.hit() && missed(ray, nearer, before, 0).verdict == RayVerdict::defect) return false;
+  if (!hits) return true;
+  // And something must be there, or may be: as it is, past an outline, or where a distance says little.
+  const double behind = distance * (1 + share);
+  if (truth_.nearest(origin + direction * before, direction, behind - before).hit()) return true;
+  if (is_near_outline(ray, before, behind)) return true;
+  const ReferenceHit found = ask_truth(ray);
+  if (!found.hit()) return false;
+  const SurfaceBounds bounds = bounds_of(truth_shapes_, ray, id_of(found), found.distance);
+  return bounds.grazing || std::abs(found.distance - distance) <= bounds.distance_error;
 }
 
 }  // namespace raytree::benchmarks

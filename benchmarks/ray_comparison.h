@@ -56,10 +56,18 @@ class RayJudge {
         tolerance_(tolerance),
         of_facets_(of_facets) {}
 
+  /// For a fast tracer that reckons otherwise than the renderer's.
+  void set_arithmetic(const FastArithmetic& arithmetic) { arithmetic_ = arithmetic; }
+
   /// Compares nearest hits. `found`: the truth's.
   RayComparison nearest(const ComparedRay& ray, const Hit& hit, const ReferenceHit& found) const;
   /// Compares whether something is in the way.
   RayComparison occlusion(const ComparedRay& ray, bool occluded, const ReferenceHit& found) const;
+
+  /// Whether rounding can make a tracer say that a ray's nearest hit is about `distance` away, whatever it is that it
+  /// hit: closer than `share` of the distance nothing must be told apart. Infinite: that there is no hit. Of an
+  /// occlusion ray any distance but infinity says that something is in the way.
+  bool is_possible(const ComparedRay& ray, float distance, double share) const;
 
   ReferenceHit ask_truth(const ComparedRay& ray) const;
   /// The fast tracer's answer to the ray alone.
@@ -71,7 +79,8 @@ class RayJudge {
                           const RayComparison& otherwise) const;
   RayComparison missed(const ComparedRay& ray, const ReferenceHit& found, double end, double end_error) const;
   RayComparison extra(const ComparedRay& ray, const SurfaceBounds& bounds, const ReferenceHit& found) const;
-  bool is_near_outline(const ComparedRay& ray) const;
+  bool is_near_outline(const ComparedRay& ray, double begin, double end) const;
+  SurfaceBounds bounds_of(const ShapeSet& shapes, const ComparedRay& ray, const SurfaceId& id, double near) const;
 
   const ShapeSet& shapes_;
   const RayIntersector& tracer_;
@@ -79,6 +88,7 @@ class RayJudge {
   const ReferenceTracer& truth_;
   FacetTolerance tolerance_;
   const RayJudge* of_facets_;
+  FastArithmetic arithmetic_;
 };
 
 }  // namespace raytree::benchmarks

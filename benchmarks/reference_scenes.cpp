@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <memory>
+#include <random>
 #include <string>
 #include <utility>
 
 #include "renderer/builtin_scenes.h"
+#include "renderer/mesh_scene.h"
 #include "renderer/scene_reader.h"
 
 namespace raytree::benchmarks {
@@ -52,6 +56,36 @@ SceneDescription reference_mesh_alone() {
     return !std::holds_alternative<MeshShape>(shape.kind) && !std::holds_alternative<TerrainShape>(shape.kind);
   });
   scene.name += ", triangles alone";
+  return scene;
+}
+
+SceneDescription bare_terrain(std::int64_t triangles) {
+  SceneDescription scene = terrain_scene(triangles);
+  scene.name = fmt::format("terrain of {} triangles, no lake, from above", triangles);
+  scene.image = {800, 600};
+  std::erase_if(scene.shapes, [](const ShapeDescription& shape) { return shape.name == "water"; });
+  CameraDescription& camera = scene.cameras[0];
+  camera.position = {0, 7, 3.5}, camera.target = {0, 0.6, 0.3}, camera.field_of_view = 45;
+  return scene;
+}
+
+SceneDescription scattered_triangles(int count) {
+  auto mesh = std::make_shared<PolygonMesh>();
+  std::mt19937 random(1980);
+  const auto within = [&](double half) { return half * (2 * 0x1p-32 * static_cast<double>(random()) - 1); };
+  const double half = 0.6 * std::cbrt(8.0 / count);  // of the box that holds a triangle; the cube's is 1
+  for (int i = 0; i < count; ++i) {
+    const double x = within(1), y = within(1), z = within(1);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const double dx = within(half), dy = within(half), dz = within(half);
+      mesh->positions.push_back(Vec3f(Vec3d(x + dx, y + dy, z + dz)));
+      mesh->corners.push_back(3 * static_cast<std::uint32_t>(i) + k);
+    }
+  }
+  mesh->face_sizes.assign(static_cast<std::size_t>(count), 3);
+  SceneDescription scene = mesh_scene(mesh, "scattered");
+  scene.name = fmt::format("{} scattered triangles", count);
+  scene.image = {1280, 960};
   return scene;
 }
 

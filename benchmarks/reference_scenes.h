@@ -23,6 +23,13 @@ SceneDescription terrain_scene(std::int64_t triangles);
 inline constexpr const char* kTerrainSceneName = "terrain";                   ///< as `raytree render` takes it
 inline constexpr const char* kTerrainCountPath = "shapes.terrain.triangles";  ///< as `--set` takes it
 
+/// The built-in terrain with so many triangles and without its lake, from above, so that it fills the picture;
+/// 1280x960.
+SceneDescription bare_terrain(std::int64_t triangles);
+
+/// So many small triangles that share no corner, turned and placed at random in a cube; 1280x960.
+SceneDescription scattered_triangles(int count);
+
 /// edge^2 instances of a terrain of a million triangles, turned and scaled each in its own way, side by side before the
 /// camera; 1280x960 without anti-aliasing.
 SceneDescription instances_scene(int edge = 100);

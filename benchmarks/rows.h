@@ -33,6 +33,7 @@ std::vector<Figure> measure_types(const MeasureContext& context);
 std::vector<Figure> measure_curved(const MeasureContext& context);
 std::vector<Figure> measure_spd(const MeasureContext& context);
 std::vector<Figure> measure_naive(const MeasureContext& context);
+std::vector<Figure> measure_embree_ratios(const MeasureContext& context);
 
 /// The row's chart as SVG, of the figures that have a place in it. Empty: none has.
 std::string naive_chart_svg(const std::vector<Figure>& figures);
@@ -52,6 +53,7 @@ inline constexpr Row kRows[] = {
     {"split", measure_time_split},
     {"loading", measure_loading},
     {"bench", measure_intersection_overhead},
+    {"ratios", measure_embree_ratios},
     {"instances", measure_instances},
     {"types", measure_types},
     {"curved", measure_curved},

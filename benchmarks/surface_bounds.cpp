@@ -57,6 +57,7 @@ struct Question {
   LocalRay ray;
   Vec3d scene_origin, scene_direction;
   double near_distance;
+  FastArithmetic arithmetic;
 
   Vec3d shift(double away) const { return ray.shift(scene_origin, scene_direction, away); }
 };
@@ -79,6 +80,35 @@ void bound_plane(const Vec3d& to, const Vec3d& error, const Vec3d& normal, const
                      : (n.dot(error) + gamma(4, unit) * n.dot(absolute(to)) + std::abs(bounds.distance) * slope_error) /
                                (std::abs(slope) - slope_error) +
                            2 * kUnit * std::abs(bounds.distance);
+}
+
+/// What the test without watertight edges may be off by, in the terms of triangle_bounds(): bounds on its edge
+/// functions U = (C x D) . e2, V = (C x D) . e1, W = D . N - U - V (C = v0 - O, e1 = v0 - v1, e2 = v2 - v0, N = e2 x
+/// e1), on its slope D . N and on T = N . C. Which corner is v0 depends on what the triangle became a part of: the
+/// largest counts. What lies at the very border of a box may be missed by the boxes too, whose planes are met at b / d
+/// - o / d: that is off by some ulps of the coordinates themselves.
+struct PlainErrors {
+  double edge = 0, slope = 0, numerator = 0, box = 0;
+};
+
+PlainErrors plain_errors(const Vec3d (&v)[3], const LocalRay& ray, double shift) {
+  PlainErrors errors;
+  const Vec3d d = absolute(ray.direction);
+  for (int base = 0; base < 3; ++base) {
+    const Vec3d e1 = absolute(v[base] - v[(base + 1) % 3]), e2 = absolute(v[(base + 2) % 3] - v[base]);
+    const Vec3d c = absolute(v[base]), turned = added_cross(c, d), n = added_cross(e1, e2);
+    // C and each edge are rounded once, a cross product's component 3 times, a scalar product 3 times.
+    const double first = (gamma(8) * turned + added_cross(Vec3d(shift), d)).dot(e2),
+                 second = (gamma(8) * turned + added_cross(Vec3d(shift), d)).dot(e1);
+    const double slope = gamma(8) * n.dot(d);
+    // The third is the sum of the others and of the slope, and rounded twice more.
+    errors.edge = std::max(errors.edge, first + second + slope + gamma(2) * (turned.dot(e1) + turned.dot(e2)));
+    errors.slope = std::max(errors.slope, slope);
+    errors.numerator = std::max(errors.numerator, gamma(9) * n.dot(c) + n.dot(Vec3d(shift)));
+  }
+  for (const Vec3d& corner : v)
+    errors.box = std::max(errors.box, gamma(4) * (absolute(corner + ray.origin) + absolute(ray.origin)).length());
+  return errors;
 }
 
 /// The edge functions and the distance of Embree's robust test, which reckons in Pluecker coordinates about the ray's
@@ -109,13 +139,16 @@ SurfaceBounds triangle_bounds(const Question& question, const TriangleMesh& mesh
     sum += edge[i];
   }
   bounds.edge_distance = kInfinity;
+  const bool is_plain = question.arithmetic.triangles == FastArithmetic::Triangles::plain;
+  const PlainErrors plain = is_plain ? plain_errors(v, question.ray, shift.length()) : PlainErrors();
   // The test lets pass what lies outside by an ulp of the edge functions' sum.
   const double pass = 0x1p-23 * std::abs(sum);
   bool is_certain[3];
   for (int i = 0; i < 3; ++i) {
-    edge_error[i] += pass;
+    const double across = 2 * direction.cross(v[(i + 1) % 3] - v[i]).length();
+    edge_error[i] = is_plain ? 2 * plain.edge + plain.box * across : edge_error[i] + pass;
     is_certain[i] = std::abs(edge[i]) > edge_error[i];
-    const double to_distance = question.ray.scale() / (2 * direction.cross(v[(i + 1) % 3] - v[i]).length());
+    const double to_distance = question.ray.scale() / across;
     if (std::abs(edge[i]) * to_distance < bounds.edge_distance) {
       bounds.edge_distance = std::abs(edge[i]) * to_distance;
       bounds.edge_error = edge_error[i] * to_distance;
@@ -154,19 +187,25 @@ SurfaceBounds triangle_bounds(const Question& question, const TriangleMesh& mesh
                                                    2 * std::abs(normal[axis]));
   const Vec3d n = absolute(normal);
   const double slope = normal.dot(direction);
+  const double direction_shift = n.dot(question.ray.direction_shift(question.scene_direction));
   const double slope_error =
-      normal_error.dot(d) + gamma(3) * n.dot(d) + n.dot(question.ray.direction_shift(question.scene_direction));
+      is_plain ? plain.slope + direction_shift : normal_error.dot(d) + gamma(3) * n.dot(d) + direction_shift;
   bounds.distance = normal.dot(v[0]) / slope;
   bounds.grazing = !(std::abs(slope) > slope_error);
   // An error of N moves T and D . N together: what is left of it is its part along the way from v0 to the hit.
   const Vec3d in_plane = absolute(v[0] - direction * bounds.distance);
-  bounds.distance_error =
-      bounds.grazing ? kInfinity
-                     : (normal_error.dot(in_plane) + n.dot(error[0] + shift) + gamma(3) * n.dot(absolute(v[0])) +
-                        std::abs(bounds.distance) *
-                            (gamma(3) * n.dot(d) + n.dot(question.ray.direction_shift(question.scene_direction)))) /
-                               (std::abs(slope) - slope_error) +
-                           gamma(4) * std::abs(bounds.distance);
+  if (is_plain)
+    bounds.distance_error =
+        bounds.grazing ? kInfinity
+                       : (plain.numerator + std::abs(bounds.distance) * slope_error) / (std::abs(slope) - slope_error) +
+                             gamma(4) * std::abs(bounds.distance);
+  else
+    bounds.distance_error =
+        bounds.grazing ? kInfinity
+                       : (normal_error.dot(in_plane) + n.dot(error[0] + shift) + gamma(3) * n.dot(absolute(v[0])) +
+                          std::abs(bounds.distance) * (gamma(3) * n.dot(d) + direction_shift)) /
+                                 (std::abs(slope) - slope_error) +
+                             gamma(4) * std::abs(bounds.distance);
 
   // The renderer's normal: the cross product of two edges (geometry/surface.h, solve_triangle()), made unit.
   double turn = gamma(4) * products[0].length() / normal.length();
@@ -318,7 +357,7 @@ SurfaceBounds cone_bounds(const Question& question, const Cone& cone) {
 }  // namespace
 
 SurfaceBounds surface_bounds(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const SurfaceId& id,
-                             double near_distance) {
+                             double near_distance, const FastArithmetic& arithmetic) {
   const Vec3d o(origin), d(direction);
   if (id.geometry == kPlaneGeometry) {
     const Plane& plane = shapes.planes[id.primitive];
@@ -332,7 +371,7 @@ SurfaceBounds surface_bounds(const ShapeSet& shapes, const Vec3f& origin, const 
   }
   const bool instanced = id.instance != kNoInstance;
   const BoundedShapes& list = instanced ? shapes.groups[shapes.instances[id.instance].group] : shapes;
-  Question question{list, {o, d, std::nullopt}, o, d, near_distance};
+  Question question{list, {o, d, std::nullopt}, o, d, near_distance, arithmetic};
   if (instanced) {
     const InstanceTransform transform(shapes.instances[id.instance]);
     question.ray = {transform.inverse_point(o), transform.inverse_vector(d), transform};
@@ -340,7 +379,7 @@ SurfaceBounds surface_bounds(const ShapeSet& shapes, const Vec3f& origin, const 
   if (id.geometry >= kFirstMeshGeometry)
     return triangle_bounds(question, list.meshes[id.geometry - kFirstMeshGeometry].mesh, id.primitive);
   // A few spheres and discs are tested beside Embree, in double.
-  const FewShapes few(shapes, kMostFewShapes);
+  const FewShapes few(shapes, arithmetic.most_few_shapes);
   if (id.geometry == kSphereGeometry)
     return sphere_bounds(question, list.spheres.center_radius[id.primitive],
                          few.spheres && !instanced ? kFewUnit : kUnit);

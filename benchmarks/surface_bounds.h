@@ -3,6 +3,7 @@
 // / (1 - n u)) from the numbers at hand. Nothing in them is fitted; docs/validation.md derives them.
 #pragma once
 
+#include "geometry/few_shapes.h"
 #include "geometry/ray_batch.h"
 #include "geometry/shape_set.h"
 #include "geometry/vec.h"
@@ -16,6 +17,16 @@ struct SurfaceId {
   InstanceId instance = kNoInstance;
 
   bool operator==(const SurfaceId&) const = default;
+};
+
+/// How the fast tracer reckons, where it has a choice.
+struct FastArithmetic {
+  enum class Triangles : std::uint8_t {
+    watertight,  ///< Embree's robust mode: edge functions in Pluecker coordinates, boxes made larger
+    plain        ///< its other one: Moeller and Trumbore 1997, boxes as they are
+  };
+  Triangles triangles = Triangles::watertight;
+  std::size_t most_few_shapes = kMostFewShapes;  ///< spheres, and discs, up to which they are tested in double
 };
 
 struct SurfaceBounds {
@@ -35,6 +46,6 @@ struct SurfaceBounds {
 
 /// The bounds for a ray and a surface; of a surface that it meets twice, those where it is nearest to `near_distance`.
 SurfaceBounds surface_bounds(const ShapeSet& shapes, const Vec3f& origin, const Vec3f& direction, const SurfaceId& id,
-                             double near_distance);
+                             double near_distance, const FastArithmetic& arithmetic = {});
 
 }  // namespace raytree::benchmarks

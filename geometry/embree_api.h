@@ -27,9 +27,10 @@ using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, ReleaseGeometry>;
 
-/// Whether packets of 16 that ask for occlusion in a compact scene may be followed together. Embree 3.13 never comes
-/// back from some of those calls (seen with AVX-512, for spheres, quads and triangles, robust and not).
-inline constexpr bool kFollowsWideOcclusionInCompactScenes = RTC_VERSION_MAJOR >= 4;
+/// Whether packets of 16 that ask for occlusion may be followed together in scenes that are compact or have instances.
+/// Embree 3.13 never comes back from some of those calls (seen with AVX-512: compact, for spheres, quads and triangles,
+/// robust and not; among 16,000 instances).
+inline constexpr bool kFollowsWideOcclusionEverywhere = RTC_VERSION_MAJOR >= 4;
 
 #if RTC_VERSION_MAJOR >= 4
 

@@ -210,7 +210,7 @@ struct EmbreeBenchScene::Parts {
 };
 
 EmbreeBenchScene::EmbreeBenchScene(const ShapeSet& shapes, const BenchSceneOptions& options)
-    : compact_(options.compact) {
+    : shapes_(shapes), compact_(options.compact) {
   auto parts = std::make_unique<Parts>();
   parts->prepare(shapes, options.geometry);
   for (const BoundedShapes& group : shapes.groups) parts->prepare(group, options.geometry);
@@ -248,20 +248,40 @@ EmbreeBenchScene::~EmbreeBenchScene() = default;
 std::size_t EmbreeBenchScene::memory_bytes() const noexcept { return tracer_->memory_bytes(); }
 std::size_t EmbreeBenchScene::peak_memory_bytes() const noexcept { return tracer_->peak_memory_bytes(); }
 
-bool EmbreeBenchScene::has_native(int width) const noexcept {
-  RTCDevice device = tracer_->state_->device.get();
-  switch (width) {
-    case 1:
-      return true;
-    case 4:
-      return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED) != 0;
-    case 8:
-      return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
-    case 16:
-      return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
-    default:
-      return false;
-  }
+int EmbreeBenchScene::widest_call() {
+  const embree::Device device(rtcNewDevice("threads=1"));
+  int widest = 1;
+  for (const auto& [width, property] : {std::pair(4, RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED),
+                                        {8, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED},
+                                        {16, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED}})
+    if (device && rtcGetDeviceProperty(device.get(), property) != 0) widest = width;
+  return widest;
+}
+
+bool EmbreeBenchScene::has_own_surface() const noexcept { return !parts_->grids.empty(); }
+
+ShapeSet EmbreeBenchScene::surface() const {
+  if (!has_own_surface()) return shapes_;
+  const auto halved = [&](const BoundedShapes& shapes, BoundedShapes& result) {
+    result.origin = shapes.origin;
+    result.spheres = shapes.spheres, result.discs = shapes.discs, result.cones = shapes.cones;
+    for (const MeshEntry& entry : shapes.meshes)
+      result.meshes.emplace_back().mesh = halved_grids(parts_->grids.at(&entry.mesh));
+  };
+  ShapeSet result;
+  halved(shapes_, result);
+  for (const BoundedShapes& group : shapes_.groups) halved(group, result.groups.emplace_back());
+  result.instances = shapes_.instances;
+  result.planes = shapes_.planes;
+  return result;
+}
+
+Imath::Box3f EmbreeBenchScene::company_bounds() const noexcept {
+  Imath::Box3f bounds;
+  for (const Vec3f& point : parts_->company_points) bounds.extendBy(point);
+  for (const Imath::V4f& sphere : parts_->company_sphere)
+    for (const float side : {-sphere.w, sphere.w}) bounds.extendBy(Vec3f(sphere.x, sphere.y, sphere.z) + Vec3f(side));
+  return bounds;
 }
 
 double EmbreeBenchScene::intersect(const RayBatch& given, BenchCall call, HitBatch& hits) const noexcept {
@@ -283,7 +303,8 @@ double EmbreeBenchScene::occluded(const RayBatch& given, BenchCall call, std::ui
                    : call.width == 4 ? occluded_block<4>
                    : call.width == 8 ? occluded_block<8>
                                      : occluded_block<16>;
-  const bool comes_back = call.width < 16 || !compact_ || embree::kFollowsWideOcclusionInCompactScenes;
+  const bool comes_back =
+      call.width < 16 || embree::kFollowsWideOcclusionEverywhere || !(compact_ || tracer_->state_->instanced);
   double seconds = 0;
   for (std::size_t first = 0; first < rays.size; first += kBlockOfRays)
     seconds += run(tracer_->state_->scene.get(), rays, first, std::min(kBlockOfRays, rays.size - first),

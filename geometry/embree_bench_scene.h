@@ -2,6 +2,8 @@
 // are filled and read outside the clock. Everything that bounds hold is Embree's here; planes are not in it.
 #pragma once
 
+#include <Imath/ImathBox.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -47,8 +49,15 @@ class EmbreeBenchScene {
   /// Triangles a primitive handed over, in the mean; 1 for triangles, 2 at most for quads, 128 for grids.
   double triangles_per_primitive() const noexcept { return triangles_per_primitive_; }
 
-  /// Whether Embree has calls of that width of its own on this processor.
-  bool has_native(int width) const noexcept;
+  /// Width of the largest packets that Embree has calls of its own for on this processor: 1, 4, 8 or 16.
+  static int widest_call();
+
+  /// Whether Embree's triangles are others than the meshes': grids halve their quads their own way.
+  bool has_own_surface() const noexcept;
+  /// Embree's triangles; shapes are numbered as those of the scene.
+  ShapeSet surface() const;
+  /// What holds the shapes that keep company; empty where none do.
+  Imath::Box3f company_bounds() const noexcept;
 
   /// The batch's nearest hits, in Embree's own numbers of geometry and primitive; returns the seconds that
   /// the thread ran inside the calls.
@@ -59,6 +68,7 @@ class EmbreeBenchScene {
 
  private:
   struct Parts;
+  const ShapeSet& shapes_;
   std::unique_ptr<const Parts> parts_;  ///< arrays that Embree shares: before the tracer, so that they outlive it
   std::unique_ptr<const EmbreeIntersector> tracer_;
   double build_seconds_ = 0, triangles_per_primitive_ = 1;

@@ -45,7 +45,7 @@ void set_constant_fields(Ray& ray) {
 }
 
 /// Fills a packet from rays [first, first + Width) and says which lanes are live: inside the batch, finite, with a
-/// direction and an end that is not behind the origin. (Debian's Embree 3 aborts the process on a NaN.)
+/// direction and an end that is not behind the origin. (Debian's Embree 3 aborts the process on others.)
 template <int Width, class Ray>
 void load_rays(const RayBatch& rays, std::size_t first, const float* max_distance, Ray& ray, int* valid) {
   copy_lanes<Width>(ray.org_x, rays.origin_x + first);
@@ -57,11 +57,12 @@ void load_rays(const RayBatch& rays, std::size_t first, const float* max_distanc
   copy_lanes<Width>(ray.tfar, max_distance + first);
   const int live = static_cast<int>(std::min<std::size_t>(Width, rays.size - first));
   for (int i = 0; i < Width; ++i) {
-    // x * 0 is 0 for finite x and NaN else; one sum tells for all six.
-    const float poison =
-        ray.org_x[i] * 0 + ray.org_y[i] * 0 + ray.org_z[i] * 0 + ray.dir_x[i] * 0 + ray.dir_y[i] * 0 + ray.dir_z[i] * 0;
+    const std::int32_t largest =
+        std::max(std::max(std::max(embree::size_bits(ray.org_x[i]), embree::size_bits(ray.org_y[i])),
+                          std::max(embree::size_bits(ray.org_z[i]), embree::size_bits(ray.dir_x[i]))),
+                 std::max(embree::size_bits(ray.dir_y[i]), embree::size_bits(ray.dir_z[i])));
     const bool directed = (ray.dir_x[i] != 0) | (ray.dir_y[i] != 0) | (ray.dir_z[i] != 0);
-    valid[i] = ((poison == 0) & directed & (ray.tfar[i] >= 0) & (i < live)) ? -1 : 0;
+    valid[i] = ((largest <= embree::kFarthestBits) & directed & (ray.tfar[i] >= 0) & (i < live)) ? -1 : 0;
   }
 }
 

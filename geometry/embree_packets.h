@@ -2,9 +2,12 @@
 // of the bare replay alone.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
+#include <bit>
+#include <cstdint>
 
 #include "geometry/embree_api.h"
+#include "geometry/ray_batch.h"
 #include "geometry/vec.h"
 
 namespace raytree::embree {
@@ -28,11 +31,18 @@ struct PacketTypes<4> {
   using Ray = RTCRay4;
 };
 
-/// Whether Embree may have this ray: finite, with a direction and an end that is not behind the origin. (Debian's
-/// Embree 3 aborts the process on a NaN.)
+/// A number's bits without its sign, which as integers are in the order of its size: infinity behind all that is
+/// finite, what is not a number behind infinity.
+inline std::int32_t size_bits(float x) { return std::bit_cast<std::int32_t>(x) & 0x7fffffff; }
+inline constexpr std::int32_t kFarthestBits = std::bit_cast<std::int32_t>(kFarthestRay);
+
+/// Whether Embree may have this ray: no number beyond kFarthestRay, a direction, and an end that is not behind the
+/// origin. (Debian's Embree 3 aborts the process on a NaN, and on coordinates beyond 1.8e18.)
 inline bool traceable(const Vec3f& origin, const Vec3f& direction, float max_distance) {
-  return std::isfinite(origin.x + origin.y + origin.z) && std::isfinite(direction.x + direction.y + direction.z) &&
-         direction != Vec3f(0, 0, 0) && max_distance >= 0;
+  std::int32_t largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, size_bits(origin[axis]), size_bits(direction[axis])});
+  return largest <= kFarthestBits && direction != Vec3f(0, 0, 0) && max_distance >= 0;
 }
 
 /// Lane i of a packet: a ray that starts at its origin.

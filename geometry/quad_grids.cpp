@@ -107,4 +107,18 @@ GridList joined_grids(const QuadList& quads, std::span<const Vec3f> positions) {
   return grids;
 }
 
+TriangleMesh halved_grids(const GridList& grids) {
+  TriangleMesh mesh;
+  mesh.positions = grids.points;
+  mesh.corners.reserve(grids.quads * 6);
+  for (const GridTile& tile : grids.tiles)
+    for (std::uint32_t j = 0; j + 1 < tile.height; ++j)
+      for (std::uint32_t i = 0; i + 1 < tile.width; ++i) {
+        const std::uint32_t at = tile.first_point + j * tile.width + i;
+        const std::uint32_t corner[4] = {at, at + 1, at + tile.width + 1, at + tile.width};
+        for (const int c : {0, 1, 3, 2, 3, 1}) mesh.corners.push_back(corner[c]);
+      }
+  return mesh;
+}
+
 }  // namespace raytree

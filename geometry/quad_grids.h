@@ -7,6 +7,7 @@
 
 #include "geometry/buffer.h"
 #include "geometry/quad_pairs.h"
+#include "geometry/triangle_mesh.h"
 #include "geometry/vec.h"
 
 namespace raytree {
@@ -27,5 +28,8 @@ struct GridList {
 /// into one; those without fitting neighbors are grids of their own. Where quads are halved along one diagonal or the
 /// other, as suits each, grids are not: Embree halves all of a grid alike, and the surface differs by as much.
 GridList joined_grids(const QuadList& quads, std::span<const Vec3f> positions);
+
+/// The triangles that Embree makes of grids: of each quad, counted as above, its corners (0, 1, 3) and (2, 3, 1).
+TriangleMesh halved_grids(const GridList& grids);
 
 }  // namespace raytree

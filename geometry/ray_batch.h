@@ -32,6 +32,11 @@ std::unique_ptr<std::byte[], AlignedDelete> batch_storage(std::size_t arrays, st
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();  ///< end of a ray that nothing ends
 
+/// Largest coordinate of a ray's origin and direction that tracers need take; Embree is not asked about larger ones.
+/// Beyond it squares leave single precision, and Embree built with its assertions ends the process at 1.844e18. Scenes
+/// are refused beyond it too (renderer/scene_fields.h); rays get there from planes, which have no end.
+inline constexpr float kFarthestRay = 1e18f;
+
 /// Rays, scene space (world relative to the scene's origin). Each starts at its origin (no least distance: origins are
 /// offset from the surface they leave) and ends at max_distance, infinity for none. Directions are unit.
 class RayBatch {

@@ -20,7 +20,8 @@ class RayIntersector {
  public:
   virtual ~RayIntersector() = default;
 
-  /// Nearest hit of each ray into hits[0, rays.size). A ray that is not finite misses. hits must hold rays.size.
+  /// Nearest hit of each ray into hits[0, rays.size). A ray that is not finite misses; one with a number
+  /// beyond kFarthestRay may miss. hits must hold rays.size.
   virtual void intersect(const RayBatch& rays, Coherence coherence, HitBatch& hits) const noexcept = 0;
 
   /// Whether anything lies between origin and max_distance: occluded[0, rays.size) becomes 1 or 0. The array must

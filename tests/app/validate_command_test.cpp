@@ -82,6 +82,8 @@ TEST(ValidateCommand, WrongInputIsNamed) {
   expect_bad_input({"validate", "teapot", "--truth", "spheres", "--rate", "4"}, {"--truth spheres", "rate"});
   expect_bad_input({"ray", "glass", "0,0,0"}, {"two vectors"});
   expect_bad_input({"ray", "glass", "0,0,0", "0,0,0"}, {"direction"});
+  expect_bad_input({"ray", "glass", "0,-2e18,0", "0,1,0"}, {"origin 0,-2e+18,0", "beyond 1e18"});
+  expect_bad_input({"ray", "glass", "0,0,0", "0,1,1e30"}, {"direction 0,1,1e+30", "beyond 1e18"});
   expect_bad_input({"ray", "glass", "0,0,0", "0,0,1", "--end", "-1"}, {"--end"});
 }
 

@@ -63,7 +63,12 @@ TEST(BenchConfiguration, CounterpartsDifferInTheSceneAlone) {
   BenchConfiguration quads;
   quads.build.geometry = BenchGeometry::quads;
   quads.call = {8, true};
-  EXPECT_EQ(counterpart(quads).name(), "triangles/robust/medium/8-coherent");
+  EXPECT_EQ(counterpart(quads, BenchConfiguration()).name(), "triangles/robust/medium/8-coherent");
+  BenchConfiguration plain;
+  plain.build.robust = false;
+  EXPECT_EQ(counterpart(quads, plain).name(), "triangles/plain/medium/8-coherent");
+  plain.tracer = BenchTracer::naive;
+  EXPECT_EQ(counterpart(quads, plain).name(), "triangles/robust/medium/8-coherent") << "no scene of Embree's";
 }
 
 TEST(NameFilter, FindsExpressionsAnywhereInNames) {

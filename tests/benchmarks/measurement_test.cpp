@@ -103,5 +103,22 @@ TEST(Measurement, JsonHoldsWhatTheTableShows) {
   EXPECT_FALSE(json["figures"][1].contains("at_least"));
 }
 
+TEST(Measurement, AnIntervalIsReachedByQuartilesAndNoise) {
+  Figure figure;
+  figure.row = "row", figure.what = "what";
+  figure.kind = BoundKind::within, figure.bound = 2, figure.upper = 3, figure.noise = 0.1;
+  const auto holds = [&](double low, double high) {
+    figure.measured = {low, 0.5 * (low + high), high, 9};
+    return figure.holds();
+  };
+  EXPECT_TRUE(holds(2.2, 2.4));
+  EXPECT_TRUE(holds(1.7, 1.9)) << "2 is within a tenth of 1.9";
+  EXPECT_TRUE(holds(3.2, 3.4));
+  EXPECT_FALSE(holds(1.7, 1.8));
+  EXPECT_FALSE(holds(3.4, 3.5));
+  EXPECT_FALSE(holds(std::nan(""), std::nan("")));
+  EXPECT_NE(table_line(figure).find("2.00 to 3.00"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace raytree::benchmarks

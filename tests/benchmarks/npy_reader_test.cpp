@@ -89,6 +89,8 @@ TEST(NpyReader, RefusesRaysThatAreNone) {
     return npy_file(rays, ray.size());
   };
   EXPECT_TRUE(contains(refusal(second({0, kNan, 0, 0, 0, 1})), "row 1: the origin is not finite"));
+  EXPECT_TRUE(contains(refusal(second({0, -2e18f, 0, 0, 0, 1})), "row 1: the origin is farther than 1e18 units away"));
+  EXPECT_TRUE(contains(refusal(second({0, 0, 0, 0, 0, 2e18f, 1, 2})), "row 1: its begin is farther than 1e18"));
   EXPECT_TRUE(contains(refusal(second({0, 0, 0, kInf, 0, 1})), "row 1: the direction is not finite"));
   EXPECT_TRUE(contains(refusal(second({0, 0, 0, 0, 0, 0})), "row 1: the direction is zero"));
   EXPECT_TRUE(contains(refusal(second({0, 0, 0, 0, 0, 1, -1, 1})), "row 1: its begin"));

@@ -1,0 +1,56 @@
+#include "benchmarks/bench_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/stopwatch.h"
+
+namespace raytree::benchmarks {
+namespace {
+
+/// Rays of each batch where all of them together are fewer than one batch: a packet.
+constexpr std::size_t kFewOfBatch = 8;
+
+}  // namespace
+
+BenchRays part_of(const BenchRays& kind, std::size_t batches, std::size_t most_of_batch) {
+  BenchRays part;
+  part.name = kind.name;
+  const auto take = [&](const RaySet& from, RaySet& to) {
+    to.coherence = from.coherence, to.occlusion = from.occlusion;
+    const std::size_t count = from.batches.size(), taken = std::min(count, batches);
+    for (std::size_t k = 0; k < taken; ++k) {
+      const RayBatch& batch = from.batches[k * count / taken];
+      RayBatch& copy = to.batches.emplace_back(kBenchmarkBatch);
+      for (std::size_t i = 0; i < std::min(batch.size, most_of_batch); ++i)
+        copy.push(batch.origin(i), batch.direction(i), batch.max_distance[i]);
+    }
+  };
+  take(kind.rays, part.rays);
+  if (!kind.plane_distance.empty()) {
+    take(kind.without_planes, part.without_planes);
+    const std::size_t count = kind.plane_distance.size(), taken = std::min(count, batches);
+    for (std::size_t k = 0; k < taken; ++k) part.plane_distance.push_back(kind.plane_distance[k * count / taken]);
+  }
+  return part;
+}
+
+BenchRays fitting_part(const BenchRays& kind, const RayBudget& budget,
+                       const std::function<void(const BenchRays&)>& ask_once) {
+  // Few rays are a few of many batches, so that they are the picture's, not a corner's.
+  const auto few = [&](std::size_t rays) { return part_of(kind, rays / kFewOfBatch, kFewOfBatch); };
+  if (budget.seconds <= 0) return budget.naive ? few(kNaiveRays) : part_of(kind, kBenchBatches, kBenchmarkBatch);
+  const BenchRays trial = budget.naive ? few(2 * kFewOfBatch) : part_of(kind, 2, kBenchmarkBatch);
+  double round = 0;
+  for (int i = 0; i < 2; ++i) {  // the second counts: the first finds cold caches
+    const auto start = Clock::now();
+    ask_once(trial);
+    round = seconds_since(start);
+  }
+  double rays = budget.seconds / ((budget.repetitions + 1) * round / static_cast<double>(trial.rays.size()));
+  rays = std::exp2(std::floor(std::log2(std::max(rays, 16.0))));
+  if (rays < double(kBenchmarkBatch)) return few(static_cast<std::size_t>(rays));
+  return part_of(kind, static_cast<std::size_t>(std::min(rays, 1e9)) / kBenchmarkBatch, kBenchmarkBatch);
+}
+
+}  // namespace raytree::benchmarks
