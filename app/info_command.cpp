@@ -120,12 +120,15 @@ std::vector<NormalRow> normal_rows(const TessellationSummary& made) {
   };
   return {
       {"regular", "regular", error.regular, times(1), ""},
-      {"irregular", "irregular", error.irregular, times(kIrregularShading),
+      {"irregular", "irregular", error.irregular, times(kLooseShading),
        "at extraordinary vertices, semi-sharp creases and tips, and between patches that are no polynomials, normals "
        "converge slowly"},
-      {"small", fmt::format("below {} pixels", kShortestShadedEdge), error.small, std::nullopt,
+      {"small", fmt::format("below {} pixels", kShortestShadedEdge), error.small, times(kLooseShading),
        "their normals are blends of the surface's own less than that far away"}};
 }
+
+/// In units of the tolerance.
+constexpr double kNotableSeam = 0.1;
 
 double share_over(const NormalError& error) { return error.facets > 0 ? double(error.over) / double(error.facets) : 0; }
 
@@ -138,7 +141,8 @@ Json json_of(const TessellationSummary& made) {
               {"largest_pixels", made.measured->largest.pixels},
               {"largest_shading_pixels", made.measured->largest.shading},
               {"largest_distance", made.measured->largest.distance},
-              {"largest_normal_angle_degrees", made.measured->largest.angle * kDegrees}};
+              {"largest_normal_angle_degrees", made.measured->largest.angle * kDegrees},
+              {"seam_pixels", made.measured->seam}};
   for (const NormalRow& row : normal_rows(made)) {
     Json& normals = measured["normals"][row.key];
     normals = {{"triangles", row.error.facets},
@@ -237,7 +241,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 /// Rows for each curved shape, the scene's and those of groups: of distance, then of normals by what they are held to.
 std::string tessellation_text(const SceneSummary& summary) {
   std::vector<std::vector<std::string>> rows = {
-      {"name", "faces", "triangles", "memory", "coarse", "samples", "pixels off", "units off"}};
+      {"name", "faces", "triangles", "memory", "coarse", "samples", "pixels off", "units off", "seams"}};
   std::vector<std::vector<std::string>> normals = {
       {"name", "class", "triangles", "normal off", "shading off", "held to", "over the tolerance"}};
   std::vector<std::string> notes;
@@ -248,7 +252,12 @@ std::string tessellation_text(const SceneSummary& summary) {
       const FacetDeviation& largest = made.measured->largest;
       rows.push_back({group + shape.name, grouped(made.faces), grouped(made.triangles), readable_bytes(made.bytes),
                       grouped(made.coarse_faces), grouped(made.measured->samples),
-                      fmt::format("{:.4f}", largest.pixels), fmt::format("{:.3g}", largest.distance)});
+                      fmt::format("{:.4f}", largest.pixels), fmt::format("{:.3g}", largest.distance),
+                      fmt::format("{:.4f}", made.measured->seam)});
+      if (made.tolerance && made.measured->seam > kNotableSeam * *made.tolerance)
+        notes.push_back(group + shape.name +
+                        ": its faces disagree about where they meet by as many pixels as \"seams\" says; no facets lie "
+                        "nearer to them than that");
       for (const NormalRow& row : normal_rows(made)) {
         if (row.error.facets == 0) continue;
         normals.push_back({group + shape.name, row.name, grouped(row.error.facets),

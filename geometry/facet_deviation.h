@@ -29,20 +29,33 @@ struct FacetDeviation {
 };
 
 /// Radians. A normal that is off by an angle shades as if its point were off by some pixels: by the angle over what the
-/// normal turns in a pixel, in the facet's direction where it turns most; so what moves a highlight by as much as
-/// facets may lie off anyway is no fault. And where it hardly turns by this instead: turning a normal by a changes
-/// Lambert's cosine by at most a, so that the default tolerance of 1/4 pixel lets shades differ by one level of 255.
+/// normal turns in a pixel, along the facet or from a corner of it to the point, where it turns most; so what moves a
+/// highlight by as much as facets may lie off anyway is no fault. And where it hardly turns by this instead: turning a
+/// normal by a changes Lambert's cosine by at most a, so that the default tolerance of 1/4 pixel lets shades differ by
+/// one level of 255.
 inline constexpr double kTurnPerPixel = 4.0 / 255;
 
-/// Normals of facets all of whose edges look shorter than this, in pixels, are not judged: their normals are blends of
-/// the surface's own less than that far away, and where a surface has a tip no facet is small enough.
+/// What normals are held to, in units of the tolerance. Over a regular face what facets miss goes with the square of
+/// their size, and the tolerance itself costs little (is_regular()). At extraordinary vertices and tips it goes with a
+/// power below 2, beside semi-sharp creases it is what the normal turns over the crease until facets are as narrow as
+/// that: there normals are held to more, and the tolerance is aimed at.
+inline constexpr double kLooseShading = 8;
+
+/// And of facets all of whose edges look shorter than this, in pixels: their normals are blends of the surface's own
+/// less than that far away, so that they are off by a share of so many pixels.
 inline constexpr double kShortestShadedEdge = 6;
 
-/// What normals are held to, in units of the tolerance, by the kind of face (ParametricSurface::polynomial_patch()).
-/// Over a polynomial what facets miss goes with the square of their size, and the tolerance itself costs little. At
-/// extraordinary vertices and tips it goes with a power below 2, beside semi-sharp creases it is what the normal turns
-/// over the crease until facets are as narrow as that: there normals are held to more, and the tolerance is aimed at.
-inline constexpr double kIrregularShading = 8;
+/// Where facets are sampled densely: quarters of their edges and inside, but for their corners; barycentric
+/// coordinates.
+inline constexpr std::size_t kSamplesPerFacet = 12;
+inline constexpr std::array<std::array<double, 3>, kSamplesPerFacet> kDenseSamples = [] {
+  std::array<std::array<double, 3>, kSamplesPerFacet> weights{};
+  std::size_t count = 0;
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < 4 && a + b <= 4; ++b)
+      if (a + b > 0) weights[count++] = {a / 4.0, b / 4.0, (4 - a - b) / 4.0};
+  return weights;
+}();
 
 /// The point of the triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
 inline Vec3d nearest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -86,6 +99,7 @@ class SampledFacet {
       const double pixels = view.pixels(origin + a.position, b.position - a.position);
       if (pixels > longest_) longest_ = pixels, longest = i;
       turn_over(b.normal - a.normal, pixels);
+      corner_turn_ = std::max(corner_turn_, (b.normal - a.normal).length());
     }
     // A narrow facet's edges all run along it.
     const FacetCorner &a = corners[longest], &b = corners[(longest + 1) % 3], &c = corners[(longest + 2) % 3];
@@ -102,9 +116,9 @@ class SampledFacet {
     bend_ = length > 0 ? std::min(bend_, 1.0) : 1;
   }
 
-  /// Of its edges, pixels.
-  double longest() const { return longest_; }
-  bool judges_normals() const { return longest_ >= kShortestShadedEdge; }
+  bool is_small() const { return longest_ < kShortestShadedEdge; }
+  /// Between the normals at its corners: the chord of the largest angle.
+  double bend() const { return corner_turn_; }
 
   /// At the surface's point of barycentric coordinates `weights` in the face's parameters.
   FacetDeviation at(const SurfaceSample& truth, const std::array<double, 3>& weights) const {
@@ -121,11 +135,20 @@ class SampledFacet {
     // atan x = x - x^3 / 3 + O(x^5): to 2e-7 of itself below this.
     constexpr double kSmall = 0.03;
     deviation.angle = along > 0 && tangent < kSmall ? tangent * (1 - tangent * tangent / 3) : std::atan2(across, along);
-    deviation.shading = deviation.angle / std::max(kTurnPerPixel, turn_);
+    deviation.shading = deviation.angle / std::max({kTurnPerPixel, turn_, turn_to(p, expected)});
     return deviation;
   }
 
  private:
+  /// What the normal turns in a pixel from a corner to a point of the surface: where the normals of all corners agree,
+  /// as they may about a cusp, they do not tell.
+  double turn_to(const Vec3d& p, const Vec3d& normal) const {
+    double turn = 0;
+    for (const FacetCorner& corner : corners_)
+      if (const double pixels = view_.pixels(origin_ + p, p - corner.position); pixels > 0)
+        turn = std::max(turn, (normal - corner.normal).length() / pixels);
+    return turn;
+  }
   /// From the limit surface to the tessellation. Parameters stretch, so that a point may lie beside its own facet: then
   /// over the next one, which is turned against this one by no more than the normals at the corners say, and only so
   /// much of the way back counts; but at a hard edge there is no next one.
@@ -147,9 +170,14 @@ class SampledFacet {
   std::array<bool, 3> hard_;
   Vec3d normal_;     ///< of the facet, unit; zero for one without area
   double bend_ = 0;  ///< sine of the angle that the next facet may be turned by
-  double longest_ = 0;
-  double turn_ = 0;  ///< of the normal, largest, radians a pixel
+  double longest_ = 0, corner_turn_ = 0;
+  double turn_ = 0;  ///< of the normal along the facet, largest, radians a pixel
 };
+
+/// What the normals of a facet are held to, in units of the tolerance.
+inline double shading_bound(const SampledFacet& facet, bool regular) {
+  return regular && !facet.is_small() ? 1 : kLooseShading;
+}
 
 /// Which pieces of a face's boundary are hard: [boundary points], the piece from each point to the next.
 inline void find_hard_pieces(std::span<const FaceEdge> sides, std::span<const std::uint16_t> rates,

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "geometry/facet_deviation.h"
 #include "geometry/tessellation.h"
@@ -13,13 +13,16 @@ namespace {
 /// A face is good where samples find at most this share of the tolerances; where they find more, rates rise until it is
 /// kRateAim of them.
 constexpr double kGoodShare = 0.85;
-/// Normals are off most elsewhere than at the middles of edges and facets, where they are sampled; beside semi-sharp
-/// creases by twice as much.
-constexpr double kShadingBetweenSamples = 1.5, kShadingBesideCreases = 2;
+/// Normals are off most elsewhere than at the middles of edges and facets, where they are sampled.
+constexpr double kShadingBetweenSamples = 1.5;
 constexpr double kLargestRise = 2, kLargestRiseForNormals = 4;  ///< of a rate in one round
 /// Where normals turn along one parameter less than so much of what they do along the other, more segments along it
 /// would not help.
 constexpr double kLeastTurnShare = 0.25;
+
+/// Chord between unit normals. Over facets whose normals turn more, or are off by more, the surface may bend at once:
+/// how far it is off between middles, these do not tell.
+constexpr double kKink = 0.7;
 
 /// What one sample asks for.
 struct Rise {
@@ -28,20 +31,17 @@ struct Rise {
   bool normals = false;  ///< not for distance
 };
 
-Rise rise_for(const FacetDeviation& deviation, const SampledFacet& facet, double tolerance, double normals_bound) {
+Rise rise_for(const FacetDeviation& deviation, const SampledFacet& facet, double tolerance, bool regular) {
   const double off = deviation.pixels / tolerance;
   if (off > kGoodShare) return {std::min(std::sqrt(off / kRateAim), kLargestRise)};
-  if (!facet.judges_normals()) return {};
-  const double shading = deviation.shading * kShadingBetweenSamples / tolerance;
-  const double between = normals_bound > 1 ? kShadingBesideCreases : kShadingBetweenSamples;
-  const double bound = deviation.shading * between / (tolerance * normals_bound);
+  const double aim = deviation.shading * kShadingBetweenSamples / tolerance;
+  const double bound = aim / shading_bound(facet, regular);
   // At irregular places normals converge with little more than the first power of a facet's size.
   if (bound > kGoodShare) {
-    const double rise = normals_bound > 1 ? bound / kRateAim : std::sqrt(bound / kRateAim);
-    const double until_small = facet.longest() / (kRateAim * kShortestShadedEdge);
-    return {std::min({rise, until_small, kLargestRiseForNormals}), false, true};
+    const double rise = regular ? std::sqrt(bound / kRateAim) : bound / kRateAim;
+    return {std::min(rise, kLargestRiseForNormals), false, true};
   }
-  if (shading > kGoodShare) return {std::min(std::sqrt(shading / kRateAim), kLargestRise), true, true};
+  if (aim > kGoodShare && !facet.is_small()) return {std::min(std::sqrt(aim / kRateAim), kLargestRise), true, true};
   return {};
 }
 
@@ -59,6 +59,13 @@ std::array<bool, 2> turning(const std::array<FacetCorner, 3>& corners, const std
   return {u >= kLeastTurnShare * most, v >= kLeastTurnShare * most};
 }
 
+/// Along the facet's edge that a sample lies on; nothing for one inside.
+std::optional<Vec2f> edge_through(const std::array<double, 3>& weights, const std::array<Vec2f, 3>& corners) {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (weights[k] == 0) return corners[(k + 2) % 3] - corners[(k + 1) % 3];
+  return std::nullopt;
+}
+
 class FaceMeasurement {
  public:
   FaceMeasurement(const ParametricSurface& surface, std::size_t face, const RateGoal& goal, const FaceRates& rates,
@@ -70,7 +77,8 @@ class FaceMeasurement {
         goal_(goal),
         rates_(rates),
         scratch_(scratch),
-        sampled_(scratch.patterns.find(surface.domain(face), rates.rates)),
+        sampled_(scratch.patterns.find(surface.domain(face), rates.rates,
+                                       rates.regular ? MeasuredFacets::all : MeasuredFacets::some)),
         demand_(demand) {
     find_hard_pieces(sides_, rates.rates, scratch.hard);
     identify_boundary(sides_, rates.rates, scratch.points);
@@ -123,25 +131,33 @@ void FaceMeasurement::look_at(const SampledPattern::Facet& sample) {
     const SurfaceSample& corner = scratch_.samples[sample.corners[k]];
     corners[k] = {Vec3d(corner.position), Vec3d(corner.normal)};
   }
-  const SampledFacet facet(goal_.view, goal_.origin, corners, hard_edges(c, scratch_.hard));
-  for (std::size_t m = 0; m < kFacetMiddles.size(); ++m) {
-    const FacetDeviation deviation = facet.at(scratch_.samples[sample.middles[m]], kFacetMiddles[m]);
-    const Rise rise = rise_for(deviation, facet, goal_.tolerance, rates_.normals_bound);
-    if (!(rise.factor > 1)) continue;
+  const std::array<bool, 3> hard = hard_edges(c, scratch_.hard);
+  const SampledFacet facet(goal_.view, goal_.origin, corners, hard);
+  const std::array<Vec2f, 3> at{pattern.parameters[c[0]], pattern.parameters[c[1]], pattern.parameters[c[2]]};
+  bool kinked = hard[0] || hard[1] || hard[2] || facet.bend() > kKink;
+  const auto judge = [&](const SurfaceSample& truth, const std::array<double, 3>& weights) {
+    const FacetDeviation deviation = facet.at(truth, weights);
+    kinked = kinked || deviation.angle > kKink;
+    const Rise rise = rise_for(deviation, facet, goal_.tolerance, rates_.regular);
+    if (!(rise.factor > 1)) return;
     std::array<bool, 2> along{true, true};
     if (quad_) {
-      const std::array<Vec2f, 3> at{pattern.parameters[c[0]], pattern.parameters[c[1]], pattern.parameters[c[2]]};
-      if (m < 3) {
-        const Vec2f d = at[(m + 1) % 3] - at[m];
-        along = {2 * std::abs(d.x) > std::abs(d.y), 2 * std::abs(d.y) > std::abs(d.x)};
-      }
+      if (const std::optional<Vec2f> edge = edge_through(weights, at))
+        along = {2 * std::abs(edge->x) > std::abs(edge->y), 2 * std::abs(edge->y) > std::abs(edge->x)};
       if (rise.normals) {
         const std::array<bool, 2> turns = turning(corners, at, deviation.angle);
         if ((along[0] && turns[0]) || (along[1] && turns[1])) along = {along[0] && turns[0], along[1] && turns[1]};
       }
     }
     raise(c, rise, along);
-  }
+  };
+  for (std::size_t m = 0; m < kFacetMiddles.size(); ++m) judge(scratch_.samples[sample.middles[m]], kFacetMiddles[m]);
+  if (!good_ || !kinked) return;
+  std::array<Vec2f, kSamplesPerFacet> parameters;
+  std::array<SurfaceSample, kSamplesPerFacet> truth;
+  parameters_in_facet(surface_.domain(face_), sides_.size(), at, kDenseSamples, parameters.data());
+  surface_.evaluate(face_, parameters, truth);
+  for (std::size_t i = 0; i < kSamplesPerFacet; ++i) judge(truth[i], kDenseSamples[i]);
 }
 
 /// The rates of the face's inside and, where the facet is at the boundary, those of its sides.

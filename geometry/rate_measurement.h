@@ -18,7 +18,7 @@ namespace raytree {
 struct FaceRates {
   std::span<const std::uint16_t> rates;  ///< as make_facet_pattern() takes them
   std::span<const double> shading;       ///< the same places
-  double normals_bound;                  ///< in units of the tolerance: 1 for regular faces, else kIrregularShading
+  bool regular;                          ///< see shading_bound()
 };
 
 /// What measurements keep from face to face. One thread's.

@@ -9,12 +9,13 @@ namespace {
 constexpr std::size_t kKeptBytes = std::size_t(32) << 20;  ///< of patterns; beyond, all are dropped
 
 /// All facets, or those at the boundary and some in between; those at the corners first.
-std::vector<std::uint32_t> measured_facets(FaceDomain domain, const SampledPattern& sampled,
+std::vector<std::uint32_t> measured_facets(FaceDomain domain, const SampledPattern& sampled, MeasuredFacets measured,
                                            std::size_t& corner_facets) {
   const FacetPattern& pattern = sampled.pattern;
   const std::size_t count = pattern.facet_count();
-  const double share =
-      domain == FaceDomain::quad_subfaces ? 1 : std::max(double(kMeasuredFacets) / double(count), 1.0 / kMeasuredShare);
+  const double share = domain == FaceDomain::quad_subfaces || measured == MeasuredFacets::all
+                           ? 1
+                           : std::max(double(kMeasuredFacets) / double(count), 1.0 / kMeasuredShare);
   const auto is_chosen = [&](std::size_t f) {
     // Multiples of the golden ratio are spread evenly, and in step with no rows of the pattern.
     constexpr std::uint32_t kGoldenRatio = 0x9e3779b9u;
@@ -37,7 +38,7 @@ std::vector<std::uint32_t> measured_facets(FaceDomain domain, const SampledPatte
 
 }  // namespace
 
-SampledPattern make_sampled_pattern(FaceDomain domain, std::span<const std::uint16_t> rates) {
+SampledPattern make_sampled_pattern(FaceDomain domain, std::span<const std::uint16_t> rates, MeasuredFacets measured) {
   SampledPattern sampled;
   sampled.pattern = make_facet_pattern(domain, rates);
   const FacetPattern& pattern = sampled.pattern;
@@ -52,7 +53,7 @@ SampledPattern make_sampled_pattern(FaceDomain domain, std::span<const std::uint
     sampled.parameters.push_back(parameter);
     return static_cast<std::uint32_t>(sampled.parameters.size() - 1);
   };
-  for (const std::uint32_t number : measured_facets(domain, sampled, sampled.corner_facets)) {
+  for (const std::uint32_t number : measured_facets(domain, sampled, measured, sampled.corner_facets)) {
     const std::uint32_t* c = &pattern.facets[3 * std::size_t(number)];
     SampledPattern::Facet& facet = sampled.facets.emplace_back();
     facet.number = number;
@@ -76,15 +77,16 @@ SampledPattern make_sampled_pattern(FaceDomain domain, std::span<const std::uint
   return sampled;
 }
 
-const SampledPattern& SampledPatternCache::find(FaceDomain domain, std::span<const std::uint16_t> rates) {
-  key_.assign(1, static_cast<std::uint16_t>(domain));
+const SampledPattern& SampledPatternCache::find(FaceDomain domain, std::span<const std::uint16_t> rates,
+                                                MeasuredFacets measured) {
+  key_.assign({static_cast<std::uint16_t>(domain), static_cast<std::uint16_t>(measured)});
   key_.insert(key_.end(), rates.begin(), rates.end());
   if (const auto found = patterns_.find(key_); found != patterns_.end()) return found->second;
   if (bytes_ > kKeptBytes) {
     patterns_.clear();
     bytes_ = 0;
   }
-  SampledPattern made = make_sampled_pattern(domain, rates);
+  SampledPattern made = make_sampled_pattern(domain, rates, measured);
   bytes_ += (made.pattern.parameters.size() + made.parameters.size()) * sizeof(Vec2f) +
             (made.pattern.facets.size() + made.side_of.size()) * sizeof(std::uint32_t) +
             made.facets.size() * sizeof(SampledPattern::Facet);

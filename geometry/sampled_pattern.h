@@ -19,7 +19,7 @@ inline constexpr std::array<std::array<double, 3>, 4> kFacetMiddles = {
 
 /// Facets inside one face that are looked at: so many, or one in so many if that is more. Those that touch its boundary
 /// all are: at semi-sharp creases and extraordinary vertices deviations change most. So are those of n-gons, whose
-/// subfaces meet inside, and less smoothly than they are.
+/// subfaces meet inside, and less smoothly than they are, and of faces whose normals are held to the tolerance.
 inline constexpr std::size_t kMeasuredFacets = 16, kMeasuredShare = 32;
 
 struct SampledPattern {
@@ -40,14 +40,16 @@ struct SampledPattern {
   }
 };
 
+enum class MeasuredFacets : std::uint8_t { some, all };
+
 /// rates: as make_facet_pattern() takes them.
-SampledPattern make_sampled_pattern(FaceDomain domain, std::span<const std::uint16_t> rates);
+SampledPattern make_sampled_pattern(FaceDomain domain, std::span<const std::uint16_t> rates, MeasuredFacets measured);
 
 /// Keeps what was made lately. One thread's.
 class SampledPatternCache {
  public:
   /// Holds until the next call.
-  const SampledPattern& find(FaceDomain domain, std::span<const std::uint16_t> rates);
+  const SampledPattern& find(FaceDomain domain, std::span<const std::uint16_t> rates, MeasuredFacets measured);
 
  private:
   PatternKey key_;

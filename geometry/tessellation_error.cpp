@@ -13,25 +13,15 @@
 namespace raytree {
 namespace {
 
-using Weights = std::array<double, 3>;
 constexpr std::size_t kFacetsAtOnce = 128;
 
-/// Quarters of a facet's edges and inside, but for its corners: barycentric coordinates.
-constexpr std::array<Weights, kSamplesPerFacet> sample_weights() {
-  std::array<Weights, kSamplesPerFacet> weights{};
-  std::size_t count = 0;
-  for (int a = 0; a < 4; ++a)
-    for (int b = 0; b < 4 && a + b <= 4; ++b)
-      if (a + b > 0) weights[count++] = {a / 4.0, b / 4.0, (4 - a - b) / 4.0};
-  return weights;
-}
-constexpr std::array<Weights, kSamplesPerFacet> kWeights = sample_weights();
-
-/// Triangles [begin, end) of one face, which start at `first` in the mesh; facets: the pattern's, as the mesh has them.
+/// Triangles [begin, end) of one face, which start at `first` in the mesh; facets: the pattern's, as the mesh has them;
+/// boundary: [boundary points] the face's own.
 TessellationError measure(const ParametricSurface& surface, std::size_t face, const FacetPattern& pattern,
                           const std::vector<std::uint32_t>& facets, const std::vector<std::uint8_t>& hard,
-                          const TriangleMesh& mesh, std::size_t first, std::size_t begin, std::size_t end,
-                          const TessellationView& view, double tolerance, bool regular) {
+                          const std::vector<SurfaceSample>& boundary, const TriangleMesh& mesh, std::size_t first,
+                          std::size_t begin, std::size_t end, const TessellationView& view, double tolerance,
+                          bool regular) {
   const std::size_t sides = surface.sides(face).size();
   const FaceDomain domain = surface.domain(face);
   std::vector<Vec2f> parameters((end - begin) * kSamplesPerFacet);
@@ -40,7 +30,7 @@ TessellationError measure(const ParametricSurface& surface, std::size_t face, co
     const std::uint32_t* corners = &facets[3 * f];
     parameters_in_facet(
         domain, sides, {pattern.parameters[corners[0]], pattern.parameters[corners[1]], pattern.parameters[corners[2]]},
-        kWeights, &parameters[(f - begin) * kSamplesPerFacet]);
+        kDenseSamples, &parameters[(f - begin) * kSamplesPerFacet]);
   }
   surface.evaluate(face, parameters, samples);
   TessellationError error;
@@ -53,11 +43,14 @@ TessellationError measure(const ParametricSurface& surface, std::size_t face, co
                     Vec3d(mesh.normals[mesh.normal_corners.empty() ? mesh.corners[c] : mesh.normal_corners[c]])};
     }
     const SampledFacet facet(view, surface.origin(), corners, hard_edges(&facets[3 * f], hard));
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const std::uint32_t point = facets[3 * f + k]; point < pattern.boundary_count)
+        error.seam = std::max(error.seam, view.pixels(surface.origin() + corners[k].position,
+                                                      Vec3d(boundary[point].position) - corners[k].position));
     FacetDeviation largest;
-    for (const Weights& weights : kWeights) largest.include(facet.at(*sample++, weights));
-    NormalError& normals = !facet.judges_normals() ? error.small : regular ? error.regular : error.irregular;
+    for (const auto& weights : kDenseSamples) largest.include(facet.at(*sample++, weights));
+    NormalError& normals = facet.is_small() ? error.small : regular ? error.regular : error.irregular;
     normals.include({1, largest.shading > tolerance ? 1u : 0u, largest.angle, largest.shading});
-    if (!facet.judges_normals()) largest.angle = largest.shading = 0;
     error.largest.include(largest);
   }
   error.triangles = end - begin;
@@ -118,12 +111,14 @@ TessellationError measure_tessellation(const ParametricSurface& surface, const T
           const std::vector<std::uint32_t>& corners =
               has_collapsed_side(surface.sides(face)) ? with_area : pattern.facets;
           const bool regular = is_regular(surface, face);
+          std::vector<SurfaceSample> boundary(pattern.boundary_count);
+          surface.evaluate(face, std::span(pattern.parameters).first(pattern.boundary_count), boundary);
           ++error.faces;
           error.include(tbb::parallel_reduce(
               Range(0, corners.size() / 3, kFacetsAtOnce), TessellationError(),
               [&](const Range& facets, TessellationError so_far) {
                 for (std::size_t begin = facets.begin(); begin < facets.end(); begin += kFacetsAtOnce)
-                  so_far.include(measure(surface, face, pattern, corners, hard, mesh, first[face], begin,
+                  so_far.include(measure(surface, face, pattern, corners, hard, boundary, mesh, first[face], begin,
                                          std::min(facets.end(), begin + kFacetsAtOnce), view, tolerance, regular));
                 return so_far;
               },

@@ -29,15 +29,19 @@ struct TessellationError {
   std::uint64_t faces = 0;      ///< of the surface, without holes
   std::uint64_t triangles = 0;  ///< of the tessellation
   std::uint64_t samples = 0;    ///< points of the limit surface compared
-  FacetDeviation largest;       ///< normals: of facets that are judged by them
+  FacetDeviation largest;
   /// Facets of kShortestShadedEdge and more, of regular faces (see is_regular(): held to the tolerance) and of all
-  /// others (to kIrregularShading times as much); and those that are too small to be held to anything.
+  /// others (to kLooseShading times as much); and smaller ones, held to as much as those.
   NormalError regular, irregular, small;
+  /// Pixels between the points that faces share and each face's own: what the surface's faces disagree about where they
+  /// meet, as OpenSubdiv's do at Chaikin's creases. No rates make facets better than that.
+  double seam = 0;
 
   void include(const TessellationError& other) {
     faces += other.faces, triangles += other.triangles, samples += other.samples;
     largest.include(other.largest);
     regular.include(other.regular), irregular.include(other.irregular), small.include(other.small);
+    seam = std::max(seam, other.seam);
   }
 };
 
@@ -46,7 +50,5 @@ struct TessellationError {
 /// number.
 TessellationError measure_tessellation(const ParametricSurface& surface, const TessellationRates& rates,
                                        const TriangleMesh& mesh, const TessellationView& view, double tolerance);
-
-inline constexpr int kSamplesPerFacet = 12;
 
 }  // namespace raytree

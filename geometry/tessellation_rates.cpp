@@ -169,7 +169,7 @@ bool RateFinder::measure(std::size_t face, Scratch& scratch) const {
     scratch.rates.push_back(static_cast<std::uint16_t>(inner_[face][i]));
     scratch.shading.push_back(shading_inner_[face][i]);
   }
-  return measure_demand(surface_, face, goal_, {scratch.rates, scratch.shading, regular_[face] ? 1 : kIrregularShading},
+  return measure_demand(surface_, face, goal_, {scratch.rates, scratch.shading, regular_[face] != 0},
                         scratch.measurement, scratch.demand);
 }
 

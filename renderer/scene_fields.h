@@ -413,8 +413,8 @@ void visit_fields(Visitor& visit, T& tessellation) {
       Field{.key = "tolerance",
             .text = "How far facets may lie off the limit surface as the camera sees it, in the picture; four times as "
                     "far along the line of sight and where the frame does not reach. Normals of facets "
-                    "of 6 pixels and more are off by no more than a shift of as many pixels turns them, beside "
-                    "extraordinary vertices and semi-sharp creases of eight times as many",
+                    "of 6 pixels and more are off by no more than a shift of as many pixels turns them; of smaller "
+                    "ones, and beside extraordinary vertices and semi-sharp creases, of eight times as many",
             .unit = "pixels",
             .range = kPositive},
       tessellation.tolerance);

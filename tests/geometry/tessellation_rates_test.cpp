@@ -86,6 +86,29 @@ TEST(TessellationError, IsTheSagittaOfACylinder) {
     }
 }
 
+TEST(TessellationError, SeamsAreWhatSharedPointsAreOff) {
+  const test::AnalyticSurface surface = test::torus(6, 5);
+  const TessellationRates rates = uniform_rates(surface, 4);
+  TriangleMesh mesh = tessellate(surface, rates);
+  const auto seam = [&] { return measure_tessellation(surface, rates, mesh, everywhere(0.01), kErrorTolerance).seam; };
+  EXPECT_LE(seam(), 1e-3);
+  mesh.positions[0].y += 0.03f;  // a corner of four faces
+  EXPECT_NEAR(seam(), 3, 1e-3);
+}
+
+TEST(FacetDeviation, ACuspIsOffByNoMoreThanItsFacetIsWide) {
+  // Corners whose normals agree, and one that is turned over between them: half a circle, within the way to a corner.
+  const TessellationView view = everywhere(0.5);
+  const std::array<FacetCorner, 3> corners{{{{0, 0, 0}, {0, 0, 1}}, {{2, 0, 0}, {0, 0, 1}}, {{0, 2, 0}, {0, 0, 1}}}};
+  const SampledFacet facet(view, {0, 0, 0}, corners, {});
+  SurfaceSample sample;
+  sample.position = {1, 0, 0};
+  sample.normal = {0, 0, -1};
+  const FacetDeviation deviation = facet.at(sample, {0.5, 0.5, 0});
+  EXPECT_NEAR(deviation.angle, kPi, 1e-6);
+  EXPECT_NEAR(deviation.shading, kPi / (2 / 2.0), 1e-6);  // chords of 2 in 2 pixels
+}
+
 TEST(TessellationError, OfAnNGonIsThatOfItsParaboloid) {
   // Over a triangle with the edge vectors e, y = -h (x^2 + z^2) deviates from the plane by h |e|^2 / 4 at the middle of
   // an edge: for any cut into subfaces the largest deviation is that of the longest edge, or of the inside, at most
