@@ -199,7 +199,7 @@ TEST(FileMessages, OfScenesThatSayNothing) {
 
 /// What `./run ARGUMENTS` prints, both streams; for arguments that build nothing.
 std::string script_output(const std::string& arguments) {
-  const std::string line = RAYTREE_SOURCE_DIR "/run " + arguments + " 2>&1";
+  const std::string line = "'" RAYTREE_SOURCE_DIR "/run' " + arguments + " 2>&1";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(line.c_str(), "r"), pclose);
   std::string text;
   std::array<char, 4096> block;
