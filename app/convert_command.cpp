@@ -23,6 +23,7 @@
 #include "geometry/tessellation.h"
 #include "geometry/tessellation_rates.h"
 #include "renderer/atomic_file.h"
+#include "renderer/builtin_scenes.h"
 #include "renderer/scene_fields.h"
 
 namespace raytree::app {
@@ -81,6 +82,11 @@ std::optional<ConvertOptions> parse_convert_options(const Words& words) {
     throw usage_error("give a mesh to read and a file to write: raytree convert IN OUT");
   if (!ends_in(options.output, ".obj") && !ends_in(options.output, ".ply"))
     throw usage_error(fmt::format("{}: meshes are written as .obj or .ply", options.output));
+  if (!is_mesh_file_name(options.input) && !is_patch_file_name(options.input))
+    throw usage_error(fmt::format("{}: {}; .obj, .ply and .bpt are read", options.input,
+                                  is_builtin_scene(options.input)
+                                      ? "is a built-in scene, not a file of a mesh or of patches"
+                                      : "not the name of a file of a mesh or of patches"));
   if (!levels.empty()) options.levels = static_cast<int>(parse_integer("--subdivide", levels, 0, kMaxRefinementLevels));
   if (!rate.empty()) options.rate = static_cast<int>(parse_integer("--rate", rate, 1, kLargestRate));
   if (!tolerance.empty()) {
@@ -151,7 +157,7 @@ PolygonMesh converted(const ConvertOptions& options, Warnings& warnings) {
 std::string written(const PolygonMesh& mesh, const ConvertOptions& options, Warnings& warnings) {
   if (ends_in(options.output, ".obj")) return obj_text(mesh);
   if (mesh.subdivision)
-    warnings.push_back({{options.output, 0, {}}, "subdivision tags left out: PLY has no place for them", 1});
+    warnings.push_back({{options.output, 0, {}}, "subdivision tags left out: PLY has no place for them"});
   return ply_bytes(mesh);
 }
 

@@ -1,12 +1,17 @@
 // Labels in pictures: small letters of 5 x 9 dots, drawn large enough to read. Capitals come out small.
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace raytree::app {
 
 inline constexpr int kGlyphWidth = 5, kGlyphHeight = 9;  ///< dots; two rows hang below the base line
 inline constexpr int kGlyphAdvance = kGlyphWidth + 1;    ///< from one letter to the next
+inline constexpr char kEllipsis = '\x85';                ///< the letter of three dots: a name goes on
+/// `text`, or its beginning with kEllipsis behind it, in at most `letters` letters; empty where that says nothing.
+std::string shortened(const std::string& text, std::size_t letters);
 
 /// Whether the dot in this column and row of a letter is set; a letter that is not known is a box.
 bool glyph_dot(char letter, int column, int row);

@@ -28,8 +28,8 @@ void print_warnings(const Warnings& warnings, bool all) {
   const std::size_t shown = all ? warnings.size() : std::min(kShown, warnings.size());
   for (std::size_t i = 0; i < shown; ++i) {
     std::string line = "warning: " + located_message(warnings[i].where, warnings[i].message);
-    if (warnings[i].count > 1)
-      line += fmt::format(" ({} times)", grouped(static_cast<std::uint64_t>(warnings[i].count)));
+    if (warnings[i].count > 0)
+      line += fmt::format(" ({} in all)", grouped(static_cast<std::uint64_t>(warnings[i].count)));
     print_message(line);
   }
   if (shown < warnings.size())

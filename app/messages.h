@@ -17,8 +17,8 @@ void print_message(const std::string& line);
 /// "raytree: error: ..." on standard error.
 void print_error(const std::string& message);
 
-/// "warning: file:line: object: ... (N times)", one line each; without `all`, the first few and how many more there
-/// are.
+/// "warning: file:line: object: ... (N in all)", one line each, the number where something is counted; without `all`,
+/// the first few and how many more there are.
 void print_warnings(const Warnings& warnings, bool all);
 
 /// "1,234,567".

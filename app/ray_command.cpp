@@ -44,10 +44,33 @@ std::optional<Vec3f> vector_of(const std::string& text) {
   return result;
 }
 
+/// `before`: vectors that stand before the word.
+Error no_vector(const std::string& word, std::size_t before) {
+  return usage_error(fmt::format("{} \"{}\" is not x,y,z", before == 0 ? "origin" : "direction", word));
+}
+
+/// Whether a word is meant for a vector though it begins as a flag does.
+bool begins_negative(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && word.find(',') != std::string::npos &&
+         (word[1] == '.' || (word[1] >= '0' && word[1] <= '9'));
+}
+
+/// Throws Error when a word that stands where the origin or the direction should is no vector; `wrong` holds such words
+/// in their order.
+void check_vectors(const Words& words, const Words& wrong) {
+  if (wrong.empty()) return;
+  std::size_t before = 0;  // vectors that stand before the first wrong one
+  for (const std::string& word : words) {
+    if (word == wrong.front()) break;
+    before += vector_of(word) ? 1 : 0;
+  }
+  throw no_vector(wrong.front(), before);
+}
+
 std::optional<RayOptions> parse_ray_options(const Words& words) {
   RayOptions options;
   std::string end;
-  Words ignored;
+  Words others_than_vectors;
   CLI::App command(
       "Ask the fast tracer and a slow and plain one in double precision about one ray, and say why they differ.",
       "raytree ray");
@@ -56,7 +79,8 @@ std::optional<RayOptions> parse_ray_options(const Words& words) {
                   "Scene file (.json), mesh (.obj, .ply), patches (.bpt) or built-in scene (raytree scenes)")
       ->type_name("");
   command
-      .add_option("RAY", ignored, "Origin and direction, x,y,z each, in scene space, as raytree validate prints them")
+      .add_option("RAY", others_than_vectors,
+                  "Origin and direction, x,y,z each, in scene space, as raytree validate prints them")
       ->type_name("")
       ->expected(0, 2);
   command.add_option("--end", end, "Distance at which the ray ends; default: nowhere")->type_name("T");
@@ -71,11 +95,14 @@ std::optional<RayOptions> parse_ray_options(const Words& words) {
   for (const std::string& word : words)
     if (const std::optional<Vec3f> vector = vector_of(word))
       vectors.push_back(*vector);
+    else if (begins_negative(word))
+      throw no_vector(word, vectors.size());
     else
       others.push_back(word);
   if (!parse_usage(command, others)) return std::nullopt;
   check_scene_flags(options.scene);
   check_truth(options.truth);
+  check_vectors(words, others_than_vectors);
   if (vectors.size() != 2)
     throw usage_error(
         fmt::format("two vectors x,y,z follow the scene, origin and direction; {} given", vectors.size()));

@@ -32,7 +32,7 @@ class RenderRun {
       : options_(std::move(options)), progress_(progress), interruption_(interruption) {}
 
   void run() {
-    if (options_.writes_display_referred()) transform_.emplace(options_.display);
+    if (options_.writes_display_referred()) make_transform();
     SceneDescription description = load();
     const Scene scene = build(std::move(description));
     const RenderResult result = trace(scene);
@@ -44,6 +44,19 @@ class RenderRun {
  private:
   void check_interruption() const {
     if (interruption_.stop()) throw Interrupted();
+  }
+
+  /// What is wrong with a name that a flag gave is said of the flag.
+  void make_transform() {
+    try {
+      transform_.emplace(options_.display);
+    } catch (const Error& error) {
+      SourceLocation where = error.where();
+      const DisplayOptions& given = options_.display;
+      if ((where.object == "display" && !given.display.empty()) || (where.object == "view" && !given.view.empty()))
+        where.object.insert(0, "--");
+      throw Error(error.kind(), where, error.message());
+    }
   }
 
   SceneDescription load() {

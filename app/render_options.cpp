@@ -7,11 +7,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 
 #include "app/suggestion.h"
+#include "renderer/atomic_file.h"
 
 namespace raytree::app {
 namespace {
@@ -144,11 +146,25 @@ PixelWindow parse_crop(const std::string& text) {
   if (second != std::string::npos) {
     const auto x = whole_number(text.substr(first + 1, second - first - 1)), y = whole_number(text.substr(second + 1));
     if (x && y && *x >= 0 && *y >= 0 && *x <= kMost && *y <= kMost) {
-      const ImageSize size = parse_size("--crop " + text, text.substr(0, first));
-      return {static_cast<int>(*x), static_cast<int>(*y), size.width, size.height};
+      const std::string size_text = text.substr(0, first);
+      const std::size_t cross = std::min(size_text.find('x'), size_text.size());
+      const auto width = whole_number(size_text.substr(0, cross)),
+                 height = whole_number(size_text.substr(std::min(cross + 1, size_text.size())));
+      if (width && height && *width >= 1 && *height >= 1 && *width <= kMost && *height <= kMost)
+        return {static_cast<int>(*x), static_cast<int>(*y), static_cast<int>(*width), static_cast<int>(*height)};
+      if (width && height && *width <= kMost && *height <= kMost)
+        throw usage_error(fmt::format("--crop: \"{}\": a crop is at least 1x1", text));
     }
   }
   throw usage_error(fmt::format("--crop: \"{}\" is not WxH+X+Y in pixels, for example 320x200+640+0", text));
+}
+
+double parse_exposure(const std::string& text) {
+  const double stops = parse_real("--exposure", text);
+  if (std::abs(stops) > kLargestExposure)
+    throw usage_error(
+        fmt::format("--exposure: \"{}\" is not from -{} to {} stops", text, kLargestExposure, kLargestExposure));
+  return stops;
 }
 
 /// Whether --counts asks for the SPD's standard render, which says itself how it is traced.
@@ -195,6 +211,11 @@ ChannelSet parse_channels(const std::string& text) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string name = text.substr(begin, end - begin);
     begin = end + 1;
+    if (name.empty())
+      throw usage_error(fmt::format("--channels: \"{}\": a name is missing {}", text,
+                                    end == text.size() ? "after the last comma"
+                                    : end == 0         ? "before the first comma"
+                                                       : "between commas"));
     if (name == "all") {
       for (int i = 0; i < kChannelGroupCount; ++i) channels.add(static_cast<ChannelGroup>(i));
       continue;
@@ -223,6 +244,8 @@ void check_writable(const std::string& path) {
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw Error(ErrorKind::failure, {path, 0, ""},
                 fmt::format("the folder {} cannot be written to: {}", folder, std::strerror(errno)));
+  // Rights are not all: /proc grants them, and takes no files. Begun and dropped, the file leaves nothing behind.
+  const AtomicFile probe(path);
 }
 
 std::optional<RenderCommandOptions> parse_render_options(const Words& words) {
@@ -261,9 +284,9 @@ std::optional<RenderCommandOptions> parse_render_options(const Words& words) {
   options.display.ocio_config = flags.ocio;
   options.display.display = flags.display;
   options.display.view = flags.view;
-  if (!flags.exposure.empty()) options.display.exposure = parse_real("--exposure", flags.exposure);
+  if (!flags.exposure.empty()) options.display.exposure = parse_exposure(flags.exposure);
   const auto without_effect = [&](bool given, const char* flag, const char* why) {
-    if (given) options.warnings.push_back({{}, fmt::format("{} has no effect: {}", flag, why), 1});
+    if (given) options.warnings.push_back({{}, fmt::format("{} has no effect: {}", flag, why)});
   };
   if (options.scene.intersector == "spheres") {
     const char* const why = "bounding spheres are searched by --sphere-search";

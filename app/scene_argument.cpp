@@ -71,19 +71,13 @@ Assignment parse_assignment(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-/// As set_scene_value(), with the flag as the place that messages point to.
-void set_value(SceneDescription& scene, const std::string& flag, const std::string& path, const std::string& value) {
-  try {
-    set_scene_value(scene, path, value);
-  } catch (const Error& error) {
-    throw Error(error.kind(), {}, flag + ": " + error.what());
-  }
-}
+/// A flag's number as a scene writes it: flags take .5 and +1, which JSON does not.
+std::string json_number(const char* flag, const std::string& text) { return fmt::format("{}", parse_real(flag, text)); }
 
 void set_image_size(SceneDescription& scene, const std::string& size) {
   const ImageSize wanted = parse_size("--size", size);
-  set_value(scene, "--size", "image.width", std::to_string(wanted.width));
-  set_value(scene, "--size", "image.height", std::to_string(wanted.height));
+  set_scene_value(scene, "image.width", std::to_string(wanted.width), "--size");
+  set_scene_value(scene, "image.height", std::to_string(wanted.height), "--size");
 }
 
 /// The image that a bare mesh's camera is fitted to: the default one with the flags' changes.
@@ -91,7 +85,7 @@ ImageDescription wanted_image(const SceneFlags& flags) {
   SceneDescription scene;
   for (const std::string& text : flags.sets) {
     const Assignment assignment = parse_assignment(text);
-    if (assignment.path.rfind("image.", 0) == 0) set_value(scene, "--set", assignment.path, assignment.value);
+    if (assignment.path.rfind("image.", 0) == 0) set_scene_value(scene, assignment.path, assignment.value, "--set");
   }
   if (!flags.size.empty()) set_image_size(scene, flags.size);
   return scene.image;
@@ -240,7 +234,7 @@ void check_scene_flags(const SceneFlags& flags) {
   if (!flags.reflections.empty()) parse_name<FacetReflections>("--reflections", flags.reflections);
   if (flags.classic && !(flags.terminator.empty() && flags.reflections.empty()))
     throw usage_error("--classic and --terminator or --reflections exclude each other");
-  if (!flags.depth.empty()) parse_integer("--depth", flags.depth, 1, std::numeric_limits<int>::max());
+  if (!flags.depth.empty()) parse_integer("--depth", flags.depth, 1, kMaxDepth);
   if (!flags.cutoff.empty() && parse_real("--cutoff", flags.cutoff) < 0)
     throw usage_error(fmt::format("--cutoff: {} is negative; 0 cuts nothing", flags.cutoff));
   if (!flags.antialias.empty()) parse_antialiasing(flags.antialias);
@@ -258,23 +252,25 @@ SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
   SceneDescription scene = read_scene_argument(flags, warnings);
   for (const std::string& text : flags.sets) {
     const Assignment assignment = parse_assignment(text);
-    set_value(scene, "--set", assignment.path, assignment.value);
+    set_scene_value(scene, assignment.path, assignment.value, "--set");
   }
   if (!flags.size.empty()) set_image_size(scene, flags.size);
   if (!flags.tolerance.empty()) {
-    set_value(scene, "--tolerance", "render.tessellation.tolerance", flags.tolerance);
+    set_scene_value(scene, "render.tessellation.tolerance", json_number("--tolerance", flags.tolerance), "--tolerance");
     scene.render.tessellation.rate = 0;
   }
-  if (!flags.rate.empty()) set_value(scene, "--rate", "render.tessellation.rate", flags.rate);
+  if (!flags.rate.empty()) set_scene_value(scene, "render.tessellation.rate", flags.rate, "--rate");
   apply_facet_flags(scene.render.facets, flags);
-  if (!flags.depth.empty()) set_value(scene, "--depth", "render.depth", flags.depth);
+  if (!flags.depth.empty()) set_scene_value(scene, "render.depth", flags.depth, "--depth");
   if (!flags.cutoff.empty()) scene.render.cutoff = parse_real("--cutoff", flags.cutoff);
   if (!flags.antialias.empty()) scene.render.antialias = parse_antialiasing(flags.antialias);
-  if (!flags.threshold.empty()) set_value(scene, "--threshold", "render.adaptive.threshold", flags.threshold);
-  if (!flags.levels.empty()) set_value(scene, "--levels", "render.adaptive.levels", flags.levels);
-  if (!flags.rough_samples.empty()) set_value(scene, "--rough-samples", "render.rough_samples", flags.rough_samples);
+  if (!flags.threshold.empty())
+    set_scene_value(scene, "render.adaptive.threshold", json_number("--threshold", flags.threshold), "--threshold");
+  if (!flags.levels.empty()) set_scene_value(scene, "render.adaptive.levels", flags.levels, "--levels");
+  if (!flags.rough_samples.empty())
+    set_scene_value(scene, "render.rough_samples", flags.rough_samples, "--rough-samples");
   if (!flags.minimum_level.empty())
-    set_value(scene, "--minimum-level", "render.adaptive.minimum_level", flags.minimum_level);
+    set_scene_value(scene, "render.adaptive.minimum_level", flags.minimum_level, "--minimum-level");
   if (const AdaptiveSampling& adaptive = scene.render.adaptive; adaptive.minimum_level > adaptive.levels)
     throw usage_error(
         fmt::format("--minimum-level: {} is more than the {} levels that a pixel is divided at most; "

@@ -113,6 +113,14 @@ std::optional<SheetOptions> parse_sheet_options(const Words& words) {
   return options;
 }
 
+/// The name that a scene's cells bear, the same in all of them: as much of it as fits before the longest method's.
+std::string name_in_cells(const std::string& scene, int cell_width) {
+  std::size_t longest = 0;
+  for (const auto& method : EnumTable<ShadingMethod>::entries) longest = std::max(longest, method.name.size());
+  const auto letters = static_cast<std::size_t>(cell_width / (kDot * kGlyphAdvance));
+  return letters > longest + 1 ? shortened(scene_label(scene), letters - longest - 1) : std::string();
+}
+
 /// One cell of the sheet.
 DisplayImage cell(SceneFlags flags, const SheetOptions& options, const DisplayTransform& display,
                   const Interruption& interruption, Warnings& warnings) {
@@ -145,9 +153,8 @@ void make_sheet(const SheetOptions& options, Progress& progress, const Interrupt
       Warnings of_cell;
       const int left = kMargin + column * column_width, top = kMargin + row * row_height;
       sheet.draw(cell(flags, options, display, interruption, of_cell), left, top + kLineHeight);
-      const std::string label = fmt::format("{} {}", scene_label(flags.scene), flags.shading);
-      const auto letters = static_cast<std::size_t>(size.width / (kDot * kGlyphAdvance));
-      sheet.write(label.size() <= letters ? label : flags.shading, left, top);
+      const std::string name = name_in_cells(flags.scene, size.width);
+      sheet.write(name.empty() ? flags.shading : name + " " + flags.shading, left, top);
       // What is odd about a scene is so in each of its cells.
       if (column == 0) warnings.insert(warnings.end(), of_cell.begin(), of_cell.end());
     }
@@ -156,7 +163,8 @@ void make_sheet(const SheetOptions& options, Progress& progress, const Interrupt
   if (interruption.stop()) return;
   write_image_file(options.output, sheet.image(), image_format(options.output));
   if (options.quiet) return;
-  print_message(fmt::format("wrote {} ({} scenes, each flat, gouraud, phong and limit)", options.output, rows));
+  print_message(fmt::format("wrote {} ({}flat, gouraud, phong and limit)", options.output,
+                            rows == 1 ? "" : fmt::format("{} scenes, each ", rows)));
 }
 
 }  // namespace

@@ -62,8 +62,9 @@ std::uint64_t parse_memory(const std::string& text) {
   if (text.empty()) return 0;
   constexpr std::string_view kUnits = "KMGT";
   const std::size_t unit = kUnits.find(static_cast<char>(std::toupper(static_cast<unsigned char>(text.back()))));
-  const double number = parse_real("--memory", unit == std::string_view::npos ? text : text.substr(0, text.size() - 1));
-  const double bytes = number * std::pow(1024.0, unit == std::string_view::npos ? 0.0 : double(unit) + 1);
+  const std::optional<double> number =
+      real_number(unit == std::string_view::npos ? text : text.substr(0, text.size() - 1));
+  const double bytes = number.value_or(0) * std::pow(1024.0, unit == std::string_view::npos ? 0.0 : double(unit) + 1);
   if (!(bytes >= 1) || !(bytes < 0x1p62))
     throw usage_error(fmt::format("--memory: \"{}\" is not a size, for example 800M or 4G", text));
   return static_cast<std::uint64_t>(bytes);

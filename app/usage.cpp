@@ -23,6 +23,15 @@ std::vector<std::string> flags_of(const CLI::App& command) {
   return flags;
 }
 
+/// The error of a flag given more often than it takes values, if there is one; CLI11 speaks of arguments there.
+std::optional<Error> given_twice(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options())
+    if (!option->get_positional() && option->get_items_expected_max() == 1 && option->count() > 1)
+      return usage_error(fmt::format("{} is given {}", option->get_name(),
+                                     option->count() == 2 ? "twice" : fmt::format("{} times", option->count())));
+  return std::nullopt;
+}
+
 }  // namespace
 
 Error usage_error(const std::string& message) { return Error(ErrorKind::bad_input, {}, message); }
@@ -46,6 +55,7 @@ bool parse_usage(CLI::App& command, const Words& words) {
     print_result(version_text() + "\n");
     return false;
   } catch (const CLI::ParseError& error) {
+    if (const std::optional<Error> twice = given_twice(command)) throw *twice;
     throw usage_error(error.what());
   }
   // An empty value is a mistake (an unset variable of a script, most likely), never the absence of the flag.
@@ -78,14 +88,18 @@ std::int64_t parse_integer(const std::string& flag, const std::string& text, std
   return *value;
 }
 
-double parse_real(const std::string& flag, const std::string& text) {
+std::optional<double> real_number(const std::string& text) {
   double value = 0;
   const char* const begin = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
   const char* const end = text.data() + text.size();
   const auto [stop, code] = std::from_chars(begin, end, value);
-  if (code != std::errc() || stop != end || !std::isfinite(value))
-    throw usage_error(fmt::format("{}: \"{}\" is not a number", flag, text));
-  return value;
+  return code == std::errc() && stop == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+double parse_real(const std::string& flag, const std::string& text) {
+  const std::optional<double> value = real_number(text);
+  if (!value) throw usage_error(fmt::format("{}: \"{}\" is not a number", flag, text));
+  return *value;
 }
 
 }  // namespace raytree::app

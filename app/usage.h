@@ -29,7 +29,9 @@ bool parse_usage(CLI::App& command, const Words& words);
 std::optional<std::int64_t> whole_number(const std::string& text);
 /// The whole number that `text` is; `flag` stands in the message of the Error thrown when it is none, or out of range.
 std::int64_t parse_integer(const std::string& flag, const std::string& text, std::int64_t least, std::int64_t most);
-/// The finite number that `text` is.
+/// The finite number that all of `text` is, if it is one.
+std::optional<double> real_number(const std::string& text);
+/// The finite number that `text` is; `flag` stands in the message of the Error thrown when it is none.
 double parse_real(const std::string& flag, const std::string& text);
 
 }  // namespace raytree::app

@@ -13,4 +13,10 @@ std::string located_message(const SourceLocation& where, const std::string& mess
   return text + message;
 }
 
+Error named_by(const Error& error, const SourceLocation& place) {
+  std::string text = place.object + (place.object.empty() ? "" : " of ") + place.file;
+  if (place.line > 0) text.append(":").append(std::to_string(place.line));
+  return Error(error.kind(), error.where(), error.message() + " (" + text + ")");
+}
+
 }  // namespace raytree

@@ -27,21 +27,27 @@ enum class ErrorKind {
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, SourceLocation where, const std::string& message)
-      : std::runtime_error(located_message(where, message)), kind_(kind), where_(std::move(where)) {}
+      : std::runtime_error(located_message(where, message)), kind_(kind), where_(std::move(where)), message_(message) {}
 
   ErrorKind kind() const { return kind_; }
   const SourceLocation& where() const { return where_; }
+  /// what() without the location.
+  const std::string& message() const { return message_; }
 
  private:
   ErrorKind kind_;
   SourceLocation where_;
+  std::string message_;
 };
+
+/// The same error of a file, followed by the place that names the file: "... (shapes.m of scene.json:2)".
+[[nodiscard]] Error named_by(const Error& error, const SourceLocation& place);
 
 /// What is valid but odd: loaded all the same, with a note of what was dropped and how often.
 struct Warning {
-  SourceLocation where;  ///< of the first occurrence
-  std::string message;   ///< e.g. "faces with a repeated vertex dropped"
-  std::int64_t count = 1;
+  SourceLocation where;    ///< of the first occurrence
+  std::string message;     ///< e.g. "faces with a repeated vertex dropped"
+  std::int64_t count = 0;  ///< how many there are of what the message names in the plural; 0: nothing is counted
 };
 
 using Warnings = std::vector<Warning>;

@@ -75,6 +75,30 @@ void warn(const OddityTally& tally, const std::function<SourceLocation(std::size
   if (tally.count > 0) warnings.push_back({locate(tally.first), message, tally.count});
 }
 
+/// "1 face", "2 faces".
+std::string counted_faces(std::int64_t count) { return std::to_string(count) + (count == 1 ? " face" : " faces"); }
+
+/// Why no face is left, at the first element that is at fault. `bad_vertex`: the first of a face that is not finite.
+[[noreturn]] void fail_empty(const PolygonMesh& mesh, std::size_t bad_vertex, const OddityTally& not_finite,
+                             const OddityTally& degenerate, const MeshLocator& locate) {
+  constexpr const char* kNoneLeft = ", so no face is left";
+  if (not_finite.count == 0)
+    throw Error(ErrorKind::bad_input, locate.face(degenerate.first),
+                "fewer than three distinct corners; " + counted_faces(degenerate.count) +
+                    (degenerate.count == 1 ? " was" : " of this kind were") + " dropped" + kNoneLeft);
+  const Vec3f& position = mesh.positions[bad_vertex];
+  const bool is_nan = std::isnan(position.x) || std::isnan(position.y) || std::isnan(position.z);
+  SourceLocation where = locate.vertex(bad_vertex);
+  where.object.clear();  // the message names it
+  std::string message = "vertex " + std::to_string(bad_vertex + 1) + " is not finite (" +
+                        (is_nan ? "nan" : "beyond the largest 32-bit float") + "); ";
+  message += not_finite.count == 1 ? "its 1 face was dropped"
+                                   : counted_faces(not_finite.count) + " with such vertices were dropped";
+  if (degenerate.count > 0)
+    message += ", and " + counted_faces(degenerate.count) + " with fewer than three distinct corners";
+  throw Error(ErrorKind::bad_input, where, message + kNoneLeft);
+}
+
 }  // namespace
 
 Vec3d mesh_origin(const Bounds3d& box) {
@@ -97,6 +121,7 @@ void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& 
 
   if (has_bad_face(mesh, all_finite)) {
     OddityTally mended, dropped, not_finite;
+    std::size_t bad_vertex = 0;  // the first one of the first face that is not finite
     std::vector<std::uint32_t> kept;
     std::size_t read = 0, write = 0, face_write = 0, group = 0;
     bool only_triangles = true;
@@ -114,8 +139,12 @@ void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& 
       const std::size_t size = with_sizes ? mesh.face_sizes[face] : 3;
       const std::uint32_t* const corners = mesh.corners.data() + read;
       bool finite = all_finite;
-      if (!finite)
-        finite = std::all_of(corners, corners + size, [&](std::uint32_t c) { return is_finite(mesh.positions[c]); });
+      if (!finite) {
+        const auto bad =
+            std::find_if(corners, corners + size, [&](std::uint32_t c) { return !is_finite(mesh.positions[c]); });
+        finite = bad == corners + size;
+        if (!finite && not_finite.count == 0) bad_vertex = *bad;
+      }
       std::size_t kept_size = 0;
       if (!finite) {
         not_finite.add(face);
@@ -155,10 +184,10 @@ void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& 
       mesh.face_sizes = {};
     else
       mesh.face_sizes.resize(face_write);
+    if (face_write == 0) fail_empty(mesh, bad_vertex, not_finite, dropped, locate);
     warn(mended, locate.face, "repeated corners removed from faces", warnings);
     warn(dropped, locate.face, "faces with fewer than three distinct corners dropped", warnings);
     warn(not_finite, locate.face, "faces with a vertex that is not finite dropped", warnings);
-    if (face_write == 0) throw Error(ErrorKind::bad_input, {name, 0, {}}, "no face of this file can be drawn");
   }
 
   if (!all_finite) {

@@ -31,7 +31,7 @@ struct MeshLocator {
 ///   larger faces may visit a vertex twice (that is how files write holes);
 /// - faces with a position that is not finite are dropped, and such positions become the first finite one.
 /// Group runs and holes follow; face_sizes is emptied when only triangles are left. Each kind adds one counted warning.
-/// Throws Error (bad_input) at the file when no face is left.
+/// Throws Error (bad_input) when no face is left: at the file, or at the first element that is at fault.
 void settle_mesh(PolygonMesh& mesh, const std::string& name, const MeshLocator& locate, Warnings& warnings);
 
 /// Gives corners whose normal or texture corner is kNoIndex one: their face's unit normal (Newell) and the texture

@@ -192,7 +192,7 @@ class HeaderReader {
       if (property.role >= Role::x && property.role <= Role::z && property.type != Type::float32) header_.wide = true;
       note_unused(property.role == Role::none, property, unused, unused_count);
     }
-    if (unused_count > 0) warnings_.push_back({{name_, 0, {}}, "vertex properties not used: " + unused, unused_count});
+    if (unused_count > 0) warnings_.push_back({{name_, 0, {}}, "vertex properties not used: " + unused});
 
     bool found = false;
     for (std::size_t i = 0; i < faces.properties.size(); ++i) {
@@ -207,7 +207,7 @@ class HeaderReader {
     unused_count = 0;
     for (std::size_t i = 0; i < faces.properties.size(); ++i)
       note_unused(i != faces.indices, faces.properties[i], unused, unused_count);
-    if (unused_count > 0) warnings_.push_back({{name_, 0, {}}, "face properties not used: " + unused, unused_count});
+    if (unused_count > 0) warnings_.push_back({{name_, 0, {}}, "face properties not used: " + unused});
   }
 
   static void note_unused(bool is_unused, const Property& property, std::string& names, std::int64_t& count) {

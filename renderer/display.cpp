@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "renderer/suggestion.h"
 
 namespace raytree {
 namespace {
@@ -24,8 +25,7 @@ namespace {
 namespace OCIO = OCIO_NAMESPACE;
 
 constexpr const char* kBuiltinName = "builtin";
-constexpr double kLargestExposure = 100;  // 2^100 times the largest radiance kept still is a float
-constexpr float kLargestValue = 65504;    // the largest half; beyond it view transforms of configs overflow
+constexpr float kLargestValue = 65504;  // the largest half; beyond it view transforms of configs overflow
 
 // Spaces that configs in use give linear Rec.709, by name or alias.
 constexpr std::array<const char*, 6> kLinearRec709Names = {
@@ -65,10 +65,12 @@ struct LoadedConfig {
   throw Error(ErrorKind::bad_input, {loaded.file, 0, object}, message);
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + ("\"" + name + "\"");
-  return text.empty() ? "none" : text;
+/// What may stand there, and which of it `word` most likely means.
+std::string choices_for(const std::string& word, const std::vector<std::string>& names) {
+  std::vector<std::string> quoted;  // names of a config hold blanks and commas
+  for (const std::string& name : names) quoted.push_back("\"" + name + "\"");
+  const std::optional<std::string> closest = closest_name(word, names);
+  return choices_text("choices", "", quoted) + (closest ? " (did you mean \"" + *closest + "\"?)" : "");
 }
 
 LoadedConfig load_config(const std::string& asked) {
@@ -155,13 +157,14 @@ DisplayTransform::DisplayTransform(const DisplayOptions& options) : state_(std::
     if (display == state.choices.end()) {
       std::vector<std::string> names;
       for (const DisplayChoices& c : state.choices) names.push_back(c.display);
-      throw_bad(state.loaded, "display", "unknown display \"" + state.display + "\"; choices: " + joined(names));
+      throw_bad(state.loaded, "display",
+                "unknown display \"" + state.display + "\"; " + choices_for(state.display, names));
     }
     state.view = options.view.empty() ? state.loaded.config->getDefaultView(state.display.c_str()) : options.view;
     if (std::find(display->views.begin(), display->views.end(), state.view) == display->views.end())
       throw_bad(state.loaded, "view",
-                "unknown view \"" + state.view + "\" of display \"" + state.display +
-                    "\"; choices: " + joined(display->views));
+                "unknown view \"" + state.view + "\" of display \"" + state.display + "\"; " +
+                    choices_for(state.view, display->views));
 
     const Source source = source_of(state.loaded);
     state.source_space = source.space;

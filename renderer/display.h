@@ -11,6 +11,8 @@
 
 namespace raytree {
 
+inline constexpr double kLargestExposure = 100;  ///< stops; 2^100 times the largest radiance kept still is a float
+
 struct DisplayOptions {
   std::string ocio_config;  ///< file; "builtin": the built-in config; empty: $OCIO, or else the built-in config
   std::string display;      ///< empty: the config's default

@@ -179,10 +179,12 @@ SceneDescription patch_scene(const std::string& path, const ImageDescription& im
 SceneDescription mesh_scene(const std::string& path, Warnings& warnings, const ImageDescription& image) {
   if (is_patch_file_name(path)) return patch_scene(path, image);
   auto mesh = std::make_shared<PolygonMesh>(read_mesh_file(path, warnings));
-  if (!mesh->material_libraries.empty() && !has_material_library(*mesh, path))
+  if (!mesh->material_libraries.empty() && !has_material_library(*mesh, path)) {
+    const std::size_t more = mesh->material_libraries.size() - 1;
     warnings.push_back({{path, 0, {}},
-                        "material library " + in_quotes(mesh->material_libraries.front()) + " is not there",
-                        static_cast<std::int64_t>(mesh->material_libraries.size())});
+                        "material library " + in_quotes(mesh->material_libraries.front()) + " is not there" +
+                            (more > 0 ? ", nor are the " + std::to_string(more) + " after it" : "")});
+  }
   return mesh_scene(std::move(mesh), path, image);
 }
 

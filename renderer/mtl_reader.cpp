@@ -142,7 +142,10 @@ class MtlParser {
       material.transparency = std::clamp(required_number(p, end, word), 0.0, 1.0);
     } else if (word == "illum") {
       const double model = required_number(p, end, word);
-      if (model != std::floor(model) || model < 0 || model > 10) fail("illum is a whole number from 0 to 10");
+      if (model != std::floor(model) || model < 0 || model > 10) {
+        const char* after = p;
+        fail("illum is a whole number from 0 to 10, not " + in_quotes(std::string(next_word(after, end))));
+      }
       if (model == 10) drop(Dropped::matte);
       material.illumination = static_cast<int>(model);
     } else if (word == "Ke") {

@@ -49,8 +49,9 @@ std::vector<BezierPatch> read_file(const std::string& file, const std::string& f
   try {
     return read_patch_file(path.string(), warnings);
   } catch (const Error& error) {
-    // A file that cannot be had is the scene's mistake: say where the scene names it.
-    if (std::filesystem::exists(path) || where.file.empty()) throw;
+    if (where.file.empty()) throw;
+    // A file that cannot be had is the scene's mistake; of one that is damaged the scene's place comes second.
+    if (std::filesystem::exists(path)) throw named_by(error, where);
     throw Error(error.kind(), where, error.what());
   }
 }

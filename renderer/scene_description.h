@@ -114,6 +114,7 @@ struct RenderSettings {
 };
 /// Bounds what a thread keeps of a tree: 2 rough_samples batches of rays.
 inline constexpr int kMaxRoughSamples = 1024;
+inline constexpr int kMaxDepth = 1'000'000;  ///< of the ray tree
 
 struct ConstantBackground {
   Rgb color{0, 0, 0};

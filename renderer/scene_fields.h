@@ -438,7 +438,7 @@ void visit_fields(Visitor& visit, T& facets) {
 
 template <class Visitor, Is<RenderSettings> T>
 void visit_fields(Visitor& visit, T& render) {
-  visit(Field{.key = "depth", .text = "Levels of the ray tree; the eye ray is level 1", .range = {1, 1'000'000}},
+  visit(Field{.key = "depth", .text = "Levels of the ray tree; the eye ray is level 1", .range = {1, kMaxDepth}},
         render.depth);
   visit(Field{.key = "cutoff",
               .text = "Largest radiance per channel that cutting branches of the tree may take from a sample; 0 cuts "

@@ -245,13 +245,13 @@ void set_tagged(const Place& at, PathRest rest, const NewValue& value, Variant& 
 
 }  // namespace
 
-void set_scene_value(SceneDescription& scene, const std::string& path, const std::string& value) {
-  const std::string file = "--set";
-  const Place root(file, Place::Lines::none);
+void set_scene_value(SceneDescription& scene, const std::string& path, const std::string& value,
+                     const std::string& flag) {
+  const Place root(flag, Place::Lines::none);
   if (path.empty()) root.fail(0, "a path is missing, e.g. render.depth=12");
   JsonDocument document = JsonDocument::of_string(value);
   try {
-    document = JsonDocument::parse(value, file);
+    document = JsonDocument::parse(value, flag);
   } catch (const Error&) {
     // Not JSON: a string, so that quotes need no quotes of their own on a command line.
   }

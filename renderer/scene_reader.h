@@ -20,9 +20,10 @@ SceneDescription read_scene(std::string_view json, const std::string& name, cons
 /// "shapes.terrain.triangles" "10000000". The value is JSON; what does not parse as JSON is taken as a string.
 /// Components go by index ("ambient[0]"), names with dots by the longest that fits or in quotes, whole objects as JSON;
 /// setting a "type" resets what depends on it. A mesh left without file and faces is for the loader to refuse.
-/// Throws Error (bad_input, file "--set") naming the path's unknown part and listing what exists there; the scene is
-/// then unchanged.
-void set_scene_value(SceneDescription& scene, const std::string& path, const std::string& value);
+/// Throws Error (bad_input, its file is `flag`) naming the path's unknown part and listing what exists there; the scene
+/// is then unchanged.
+void set_scene_value(SceneDescription& scene, const std::string& path, const std::string& value,
+                     const std::string& flag = "--set");
 
 /// JSON Schema (draft 2020-12) of a scene file.
 std::string scene_schema();

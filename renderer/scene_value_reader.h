@@ -328,7 +328,11 @@ class ObjectReader {
       read(Place(at_, field.key), field, *value, member);
     else if (field.required)
       // Said only after unknown keys: one of them may be this one, misspelled.
-      afterwards_.emplace_back([this, key = field.key] { fail_missing(key, {}); });
+      afterwards_.emplace_back([this, key = field.key] {
+        // Whose only value is known beforehand.
+        constexpr bool is_version = std::same_as<Member, SceneVersion>;
+        fail_missing(key, is_version ? "say " + in_quotes(key) + ": " + std::to_string(kSceneVersion) : std::string());
+      });
   }
 
   template <class Variant>

@@ -217,8 +217,9 @@ class Assembler {
       try {
         mesh = std::make_shared<PolygonMesh>(read_mesh_file(path.string(), warnings_));
       } catch (const Error& error) {
-        // A file that cannot be had is the scene's mistake: say where the scene names it.
-        if (std::filesystem::exists(path) || shape.where.file.empty()) throw;
+        if (shape.where.file.empty()) throw;
+        // A file that cannot be had is the scene's mistake; of one that is damaged the scene's place comes second.
+        if (std::filesystem::exists(path)) throw named_by(error, shape.where);
         throw Error(error.kind(), shape.where, error.what());
       }
     }

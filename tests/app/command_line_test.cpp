@@ -124,7 +124,7 @@ TEST(CommandLineErrors, ValuesOutOfPlaceNameTheFlagAndTheForm) {
   wrong({"--minimum-level", "3", "--levels", "2"}, {"--minimum-level", "3", "2 levels"});
   wrong({"--exposure", "bright"}, {"--exposure", "bright"});
   wrong({"--channels", "color,dept"}, {"--channels", "\"dept\"", "did you mean depth?", "truncation, all"});
-  wrong({"--channels", "color,"}, {"--channels", "\"\""});
+  wrong({"--channels", "color,"}, {"--channels", "missing"});
   wrong({"--progress", "loud"}, {"--progress", "auto, bar, plain, none"});
   wrong({"--set", "render.depth"}, {"--set", "PATH=VALUE"});
   wrong({"--set", "=3"}, {"--set"});

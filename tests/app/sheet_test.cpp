@@ -47,6 +47,29 @@ TEST(Sheet, ShowsEverySceneInFourWaysUnderItsName) {
   EXPECT_EQ(file_text(path), file_text(folder.path("again.png")));
 }
 
+TEST(Sheet, ShortensANameForTheWholeRow) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("sheet.png");
+  // 16 letters a cell: "cylinders flat" would fit, "cylinders gouraud" would not.
+  const ProgramResult result =
+      run_program({"sheet", "cylinders", "-o", path, "--size", "200x20", "--antialias", "none"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "(flat, gouraud, phong and limit)")) << result.err;
+  const DecodedImage sheet = read_image_file(path);
+  const auto letters = [&](int column, int begin, int count) {
+    std::vector<float> values;
+    for (int y = 8; y < 8 + 18; ++y)
+      for (int x = 0; x < 12 * count; ++x)
+        values.push_back(sheet.planes[0][std::size_t(y * sheet.width + 8 + 208 * column + 12 * begin + x)]);
+    return values;
+  };
+  const std::vector<float> name = letters(0, 0, 9);  // seven letters, the dots, a blank
+  EXPECT_GT(std::count_if(name.begin(), name.end(), [](float v) { return v > 0.9f; }), 300);
+  const std::vector<float> dots = letters(0, 7, 1);
+  EXPECT_EQ(std::count_if(dots.begin(), dots.end(), [](float v) { return v > 0.9f; }), 3 * 4) << "three dots";
+  for (int column = 1; column < 4; ++column) EXPECT_EQ(letters(column, 0, 9), name) << column;
+}
+
 TEST(Sheet, RefusesWhatItCannotDo) {
   const TemporaryFolder folder;
   const std::string out = folder.path("sheet.png");

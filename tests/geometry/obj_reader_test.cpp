@@ -183,7 +183,9 @@ TEST(ObjReader, GroupsCannotMultiplyAFile) {
   // Records of changes within a chunk are bounded too.
   text = kThree;
   for (int i = 0; i < 100000; ++i) text += "g\nf\n";
-  EXPECT_EQ(obj_error(text + "g\nf 1 2"), "test.obj: no face of this file can be drawn");
+  EXPECT_EQ(
+      obj_error(text + "g\nf 1 2"),
+      "test.obj:5: fewer than three distinct corners; 100001 faces of this kind were dropped, so no face is left");
 }
 
 TEST(ObjReader, ErrorsNameFileAndLine) {
@@ -200,7 +202,21 @@ TEST(ObjReader, ErrorsNameFileAndLine) {
   EXPECT_NE(obj_error(kThree + "f 1 2 99999999999999999999\n").find("test.obj:4"), std::string::npos);
   EXPECT_EQ(obj_error(""), "test.obj: no faces in this file");
   EXPECT_EQ(obj_error(kThree), "test.obj: no faces in this file");
-  EXPECT_EQ(obj_error(kThree + "f 1 1 2\nf 2\nf\n"), "test.obj: no face of this file can be drawn");
+  EXPECT_EQ(obj_error(kThree + "f 1 1 2\nf 2\nf\n"),
+            "test.obj:4: fewer than three distinct corners; 3 faces of this kind were dropped, so no face is left");
+  EXPECT_EQ(obj_error(kThree + "f 1 1 2\n"),
+            "test.obj:4: fewer than three distinct corners; 1 face was dropped, so no face is left");
+  // The first vertex of a face that is at fault, not one that no face uses.
+  const std::string bad = "v inf 0 0\nv 0 0 0\nv 1 0 nan\nv 0 1e39 0\n";
+  EXPECT_EQ(obj_error(bad + "f 2 3 4\n"),
+            "test.obj:3: vertex 3 is not finite (nan); its 1 face was dropped, so no face is left");
+  EXPECT_EQ(obj_error(bad + "f 2 2 3\nf 2 4 3\nf 2 2 2\n"),
+            "test.obj:3: vertex 3 is not finite (nan); 2 faces with such vertices were dropped, and 1 face with fewer "
+            "than three distinct corners, so no face is left");
+  EXPECT_EQ(
+      obj_error("v 0 0 0\nv 0 1e39 0\nv 1 0 0\nf 1 2 3\n"),
+      "test.obj:2: vertex 2 is not finite (beyond the largest 32-bit float); its 1 face was dropped, so no face is "
+      "left");
   EXPECT_NE(obj_error(std::string("\xff\xfev\0 \0", 6)).find("UTF-16"), std::string::npos);
 }
 

@@ -157,7 +157,7 @@ TEST(PlyReader, SaysWhatItSkips) {
   read_bytes(roof("binary_little_endian", "float", "uchar", "int", true) + "xyz", &warnings);
   ASSERT_EQ(warnings.size(), 4u);
   EXPECT_EQ(warnings[0].message, "vertex properties not used: 'weights', 'red'");
-  EXPECT_EQ(warnings[0].count, 2);
+  EXPECT_EQ(warnings[0].count, 0);  // a list of names counts nothing
   EXPECT_EQ(warnings[1].message, "face properties not used: 'flags', 'tags', 'texcoord'");
   EXPECT_EQ(warnings[2].message, "bytes after the last element dropped");
   EXPECT_EQ(warnings[2].count, 3);
@@ -286,7 +286,11 @@ TEST(PlyReader, BodyErrorsNameLineOrElement) {
   EXPECT_EQ(ply_error(binary), "test.ply: face 3: a corner is not the index of a vertex: it must be in 0..4");
   binary[binary.size() - 1] = '\xff';
   EXPECT_NE(ply_error(binary).find("face 3: a corner"), std::string::npos);
-  EXPECT_EQ(ply_error(triangle("", three, "3 0 0 1\n2 0 1\n0\n")), "test.ply: no face of this file can be drawn");
+  EXPECT_EQ(ply_error(triangle("", three, "3 0 0 1\n2 0 1\n0\n")),
+            "test.ply:13: face 1: fewer than three distinct corners; 3 faces of this kind were dropped, so no face is "
+            "left");
+  EXPECT_EQ(ply_error(triangle("", {"0 0 0", "0 nan 0", "1 0 0"})),
+            "test.ply:11: vertex 2 is not finite (nan); its 1 face was dropped, so no face is left");
 }
 
 TEST(PlyReader, SizesAreCheckedBeforeMemoryIsTaken) {

@@ -131,7 +131,7 @@ TEST(MtlReader, DamagedStatementsAreErrorsWithTheirLine) {
                                          {"newmtl a\nNs\n", 2, "Ns needs"},
                                          {"newmtl a\nNi glass\n", 2, "\"glass\""},
                                          {"newmtl a\nillum 2.5\n", 2, "illum"},
-                                         {"newmtl a\nillum 11\n", 2, "0 to 10"},
+                                         {"newmtl a\nillum 42\n", 2, "0 to 10, not \"42\""},
                                          {"newmtl a\nd\n", 2, "d needs"}}) {
     SCOPED_TRACE(text);
     test::expect_refusal(

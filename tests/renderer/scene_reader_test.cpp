@@ -144,7 +144,7 @@ TEST(SceneReader, TheVersionHeadsTheFile) {
     }
     return "accepted";
   };
-  EXPECT_EQ(message("{}"), "s.json:1: missing key \"raytree\"");
+  EXPECT_EQ(message("{}"), "s.json:1: missing key \"raytree\"; say \"raytree\": 1");
   EXPECT_EQ(message("{\"raytree\": 2}"), "s.json:1: raytree: scene version 2 is unknown; this program reads version 1");
   // No int holds it, nor may it be converted to one.
   EXPECT_EQ(message("{\"raytree\": 1e18}"), "s.json:1: raytree: 1e+18 is out of range");

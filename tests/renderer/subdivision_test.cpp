@@ -115,7 +115,7 @@ TEST(Subdivision, TagsOfAFileCountWhereTheSceneSubdivides) {
   EXPECT_LT(scene(R"(, "subdivision": {"boundary": "edge_only"})", warnings).bounds.max.x, 0.97);
   EXPECT_TRUE(warnings.empty());
   EXPECT_EQ(scene("", warnings).triangles, 2u);
-  EXPECT_EQ(test::found_warning(warnings, "subdivision tags not used"), "1 x1");
+  EXPECT_EQ(test::found_warning(warnings, "subdivision tags not used"), "1 x0");
 }
 
 }  // namespace
