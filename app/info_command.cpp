@@ -135,6 +135,7 @@ double share_over(const NormalError& error) { return error.facets > 0 ? double(e
 Json json_of(const TessellationSummary& made) {
   Json json = {
       {"faces", made.faces}, {"triangles", made.triangles}, {"bytes", made.bytes}, {"coarse_faces", made.coarse_faces}};
+  if (made.unseen) json["unseen"] = true;
   if (!made.measured) return json;
   Json& measured = json["measured"];
   measured = {{"samples", made.measured->samples},
@@ -244,9 +245,11 @@ std::string tessellation_text(const SceneSummary& summary) {
       {"name", "faces", "triangles", "memory", "coarse", "samples", "pixels off", "units off", "seams"}};
   std::vector<std::vector<std::string>> normals = {
       {"name", "class", "triangles", "normal off", "shading off", "held to", "over the tolerance"}};
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, unseen;
   const auto add = [&](const std::string& group, const std::vector<ShapeSummary>& shapes) {
     for (const ShapeSummary& shape : shapes) {
+      if (shape.tessellation && shape.tessellation->unseen)
+        unseen.push_back(fmt::format("{}{}: not made, no ray of the picture can meet it", group, shape.name));
       if (!shape.tessellation || !shape.tessellation->measured) continue;
       const TessellationSummary& made = *shape.tessellation;
       const FacetDeviation& largest = made.measured->largest;
@@ -272,9 +275,12 @@ std::string tessellation_text(const SceneSummary& summary) {
   };
   add("", summary.shapes);
   for (const GroupSummary& group : summary.groups) add(group.name + "/", group.shapes);
-  if (rows.size() == 1) return "tessellation  no curved shapes\n";
-  std::string text = "tessellation\n" + table(rows) +
-                     "normals    angles, and pixels of the picture that shading is off by for them\n" + table(normals);
+  if (rows.size() == 1 && unseen.empty()) return "tessellation  no curved shapes\n";
+  std::string text = "tessellation\n";
+  if (rows.size() > 1)
+    text +=
+        table(rows) + "normals    angles, and pixels of the picture that shading is off by for them\n" + table(normals);
+  for (const std::string& note : unseen) text += "  " + note + "\n";
   for (const std::string& note : notes) text += "  " + note + "\n";
   return text;
 }

@@ -32,6 +32,7 @@ struct TessellationSummary {
   std::uint64_t triangles = 0;
   std::uint64_t bytes = 0;                    ///< of the arrays that tracing and shading read
   std::uint64_t coarse_faces = 0;             ///< that may be off by more than the tolerance
+  bool unseen = false;                        ///< nothing was made: no ray can meet it (unseen_surface.h)
   std::optional<double> tolerance;            ///< pixels, that the rates were found for; none: they were given
   std::optional<TessellationError> measured;  ///< when PrepareOptions::measure_tessellation asked for it
 };

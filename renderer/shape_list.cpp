@@ -27,6 +27,7 @@
 #include "renderer/scatter.h"
 #include "renderer/scene_fields.h"
 #include "renderer/shape_shading.h"
+#include "renderer/unseen_surface.h"
 
 namespace raytree {
 
@@ -177,12 +178,17 @@ class Assembler {
   }
 
   /// What every curved shape becomes; `surface` lies in the shape's space. `patches`: what it is made of, relative to
-  /// its origin, where that is to be kept and known.
+  /// its origin, where that is to be kept and known. `hull`: a box about it, in the shape's space.
   void add_surface(std::shared_ptr<const ParametricSurface> surface, std::vector<LimitPatch>&& patches,
-                   const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
-    begin_phase("tessellating " + shape.name);
+                   const Bounds3d& hull, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     const SurfaceTessellation tessellation(scene_, chosen_camera(scene_, options_.camera),
                                            options_.measure_tessellation);
+    // What instances share is made for all of them: a use must keep its object's id wherever the camera looks.
+    if (!places_ && !rays_leave_hits(scene_, shape) && tessellation.is_outside_frame(hull, shape)) {
+      leave_out(*surface, hull, shape, summary);
+      return;
+    }
+    begin_phase("tessellating " + shape.name);
     FacetParameters parameters;
     const bool by_surface = method_ == ShadingMethod::limit, keeps = !patches.empty();
     TriangleMesh mesh =
@@ -206,6 +212,20 @@ class Assembler {
     MeshSource* const kept = source.get();
     add_mesh(std::move(mesh), shape, id, summary, std::move(record), std::move(source));
     if (kept != nullptr) kept->pixel = tessellation.pixel_size(places_, summary.bounds);
+  }
+
+  /// Makes nothing of a curved shape that no ray can meet. Its bounds stay near what they would be, for they tell where
+  /// scene space begins.
+  void leave_out(const ParametricSurface& surface, const Bounds3d& hull, const ShapeDescription& shape,
+                 ShapeSummary& summary) const {
+    TessellationSummary& record = summary.tessellation.emplace();
+    for (std::size_t face = 0; face < surface.face_count(); ++face) record.faces += !surface.sides(face).empty();
+    record.unseen = true;
+    summary.shading = enum_name(method_);
+    for (int i = 0; i < 8; ++i)
+      summary.bounds.extendBy(transformed_point(
+          {i & 1 ? hull.max.x : hull.min.x, i & 2 ? hull.max.y : hull.min.y, i & 4 ? hull.max.z : hull.min.z},
+          shape.transform));
   }
 
   void add_kind(MeshShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
@@ -242,17 +262,20 @@ class Assembler {
       set_vertex_normals(*mesh, shape, method_, false);
       add_polygons(std::move(*mesh), shape, id, summary);
     }
-    tag_materials(groups, group_materials, assembly.meshes.back(), summary);
+    const bool made = !(summary.tessellation && summary.tessellation->unseen);
+    if (made) tag_materials(groups, group_materials, assembly.meshes.back(), summary);
   }
 
   void add_kind(PatchesShape& kind, const ShapeDescription& shape, ShapeId id, ShapeSummary& summary) {
     summary.kind = "patches";
     begin_phase("preparing " + shape.name);
-    const auto surface = std::make_shared<PatchSurface>(surface_patches(kind, scene_.folder, shape.where, warnings_),
-                                                        surface_options(kind), shape.where, warnings_);
+    std::vector<SurfacePatch> patches = surface_patches(kind, scene_.folder, shape.where, warnings_);
+    const Bounds3d hull = hull_bounds(patches);
+    const auto surface =
+        std::make_shared<PatchSurface>(std::move(patches), surface_options(kind), shape.where, warnings_);
     summary.faces_by_size[1] = static_cast<std::int64_t>(surface->face_count());
-    add_surface(surface, options_.keeps_sources() ? surface->limit_patches() : std::vector<LimitPatch>(), shape, id,
-                summary);
+    add_surface(surface, options_.keeps_sources() ? surface->limit_patches() : std::vector<LimitPatch>(), hull, shape,
+                id, summary);
   }
 
   void add_subdivided(const PolygonMesh& mesh, const MeshShape& kind, const ShapeDescription& shape, ShapeId id,
@@ -260,7 +283,8 @@ class Assembler {
     const SubdivisionRules rules = joined(mesh.subdivision.value_or(SubdivisionRules{}), *kind.subdivision);
     std::vector<LimitPatch> patches;
     if (options_.keeps_sources()) patches = subdivision_patches(mesh, rules, shape.where);
-    add_surface(make_subdivision_surface(mesh, rules, shape.where, warnings_), std::move(patches), shape, id, summary);
+    add_surface(make_subdivision_surface(mesh, rules, shape.where, warnings_), std::move(patches), hull_bounds(mesh),
+                shape, id, summary);
   }
 
   /// Gives each triangle the material of its face's group.

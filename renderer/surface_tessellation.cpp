@@ -10,6 +10,7 @@
 #include "geometry/tessellation.h"
 #include "geometry/tessellation_rates.h"
 #include "renderer/camera.h"
+#include "renderer/unseen_surface.h"
 
 namespace raytree {
 namespace {
@@ -145,6 +146,10 @@ TriangleMesh SurfaceTessellation::make(const ParametricSurface& surface, const S
     if (!error.where().file.empty()) throw;
     throw Error(error.kind(), shape.where, error.what());
   }
+}
+
+bool SurfaceTessellation::is_outside_frame(const Bounds3d& hull, const ShapeDescription& shape) const {
+  return outside_frame(hull, shape.transform, view_);
 }
 
 PixelSize SurfaceTessellation::pixel_size(const ListPlaces& places, const Bounds3d& box) const {

@@ -41,6 +41,10 @@ class SurfaceTessellation {
   TriangleMesh make(const ParametricSurface& surface, const ShapeDescription& shape, const ListPlaces& places,
                     ShapeSummary& summary, Warnings& warnings, FacetParameters* parameters = nullptr) const;
 
+  /// Whether all of `hull`, in the shape's space, lies outside the full frame: see outside_frame(). For the scene's own
+  /// shapes.
+  bool is_outside_frame(const Bounds3d& hull, const ShapeDescription& shape) const;
+
   /// How wide a pixel is at places of a list of shapes, near those in `box`: at least as narrow as any of its uses is
   /// seen with.
   PixelSize pixel_size(const ListPlaces& places, const Bounds3d& box) const;

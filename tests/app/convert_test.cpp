@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
 
 #include "geometry/mesh_file.h"
 #include "tests/app/program.h"
+#include "tests/point_sets.h"
 
 namespace raytree::test {
 namespace {
@@ -31,6 +34,38 @@ TEST(Convert, WritesWhatWasMade) {
   EXPECT_EQ(convert({"--subdivide", "2", "--threads", "1"}, "a.ply"), convert({"--subdivide", "2"}, "b.ply"));
   EXPECT_TRUE(contains(convert({"--subdivide", "2"}, "c.PLY"), "element face 96\n"));
   EXPECT_TRUE(contains(convert({"--subdivide", "1", "--scheme", "bilinear"}, "flat.obj"), "v 1 1 1\n"));
+}
+
+TEST(Convert, SubdividesAsTheReferenceDoes) {
+  const TemporaryFolder folder;
+  const auto expect_agreement = [&](const std::string& shape, int refinements, const std::vector<std::string>& flags) {
+    SCOPED_TRACE(shape);
+    const std::string data = std::string(RAYTREE_TEST_DATA) + "/subdiv/";
+    const std::string cage = data + "osd_shapes/" + shape + ".obj";
+    const std::string theirs =  // level K is the cage after K + 1 refinements
+        data + "hbr_reference/" + shape + "_level" + std::to_string(refinements - 1) + ".obj";
+    if (!std::filesystem::exists(theirs)) {
+      std::fprintf(stderr, "LEFT OUT: no test data in %s\n", theirs.c_str());
+      return;
+    }
+    for (const char* name : {"out.obj", "out.ply"}) {
+      const std::string out = folder.path(name);
+      const ProgramResult result =
+          run_program(with({"convert", cage, out, "--subdivide", std::to_string(refinements)}, flags));
+      ASSERT_EQ(result.status, 0) << result.err;
+      Warnings warnings;
+      const PolygonMesh ours = read_mesh_file(out, warnings), reference = read_mesh_file(theirs, warnings);
+      // A PLY has a vertex for each pair of texture coordinates at a point.
+      if (std::string(name).ends_with(".obj")) {
+        EXPECT_EQ(ours.positions.size(), reference.positions.size());
+      }
+      EXPECT_EQ(ours.face_count(), reference.face_count());
+      EXPECT_LE(set_distance(ours.positions, reference.positions), 1e-5);
+    }
+  };
+  expect_agreement("catmark_cube_creases0", 3, {});
+  expect_agreement("catmark_dart_edgeonly", 2, {});
+  expect_agreement("bilinear_cube", 2, {"--scheme", "bilinear"});
 }
 
 TEST(Convert, TessellatesWithinADistance) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
+#include "renderer/builtin_scenes.h"
 #include "renderer/image_file.h"
 #include "tests/app/program.h"
 
@@ -94,7 +96,13 @@ TEST(ShadingFlags, ChangeThePictureAndAreChecked) {
   EXPECT_NE(picture({"--shading", "flat"}), plain);
   EXPECT_NE(picture({"--shading", "gouraud"}), plain);
   EXPECT_NE(picture({"--shading", "limit"}), plain);
-  EXPECT_NE(picture({"--terminator", "offset"}), plain);
+  const std::string offset = picture({"--terminator", "offset"});
+  EXPECT_NE(offset, plain);
+  // Off alone is what --classic turns off: both remedies, whatever the scene says.
+  const std::string classic = picture({"--classic"});
+  EXPECT_EQ(classic, picture({"--terminator", "classic", "--reflections", "classic"}));
+  EXPECT_EQ(classic, picture({"--set", "render.facets.shadow_terminator=offset", "--classic"}));
+  EXPECT_NE(classic, offset);
   expect_bad_input({"render", "molecule", "-o", folder.path("q.png"), "--shading", "gourad"},
                    {"--shading", "flat, gouraud, phong, limit", "did you mean gouraud"});
   expect_bad_input({"render", "molecule", "-o", folder.path("q.png"), "--terminator", "hanika"}, {"classic, offset"});
@@ -103,6 +111,70 @@ TEST(ShadingFlags, ChangeThePictureAndAreChecked) {
   const ProgramResult info = run_program({"info", "molecule", "--shading", "gouraud"});
   EXPECT_TRUE(contains(info.out, "gouraud shading")) << info.out;
   EXPECT_TRUE(contains(run_program({"info", "molecule", "--json"}).out, "\"shading\": \"phong\""));
+}
+
+TEST(ShadingFlags, ReflectionsOfACoarseMirrorAreByEachMethod) {
+  const TemporaryFolder folder;
+  write_text(folder.path("s.json"), R"({
+    "raytree": 1,
+    "cameras": {"main": {"position": [0, 1, 6], "target": [0, 0, 0], "field_of_view": 24}},
+    "background": {"type": "gradient", "bottom": [0.8, 0.2, 0.1], "horizon": [1, 1, 1], "top": [0.1, 0.2, 0.8]},
+    "materials": {"mirror": {"diffuse": 0, "reflection": 0.9}},
+    "shapes": {"ball": {"type": "sphere", "radius": 1, "sides": 16, "material": "mirror"}}
+  })");
+  const auto planes = [&](const std::vector<std::string>& flags) {
+    const std::string out = folder.path("p.exr");
+    const ProgramResult result = run_program(
+        with({"render", folder.path("s.json"), "-o", out, "--size", "80x80", "--antialias", "none"}, flags));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_image_file(out).planes;
+  };
+  const auto clamped = planes({"--reflections", "clamped"}), classic = planes({"--reflections", "classic"}),
+             consistent = planes({"--reflections", "consistent"});
+  EXPECT_EQ(planes({}), clamped);
+  EXPECT_EQ(planes({"--classic"}), classic);
+  EXPECT_NE(classic, clamped);
+  EXPECT_NE(classic, consistent);
+  EXPECT_NE(clamped, consistent);
+}
+
+TEST(PapersScenes, HaveTheSidesOfTheirFigures) {
+  const auto sides_of = [](const char* scene) {
+    std::multiset<int> sides;
+    for (const ShapeDescription& shape : builtin_scene(scene).shapes)
+      if (const auto* const cone = std::get_if<ConeShape>(&shape.kind)) {
+        EXPECT_EQ(cone->base_radius, cone->apex_radius) << shape.name;
+        sides.insert(cone->sides);
+      }
+    return sides;
+  };
+  EXPECT_EQ(sides_of("cylinders"), (std::multiset<int>{3, 4, 8, 12, 16, 32, 64}));
+  EXPECT_EQ(sides_of("prisms"), (std::multiset<int>{3, 3, 3, 3}));
+}
+
+TEST(PapersScenes, SheetsOfTheDocumentationAreMade) {
+  const TemporaryFolder folder;
+  std::istringstream text(file_text(RAYTREE_SOURCE_DIR "/docs/shading.md"));
+  int made = 0;
+  for (std::string line; std::getline(text, line);) {
+    if (!line.starts_with("./run sheet ")) continue;
+    SCOPED_TRACE(line);
+    std::istringstream words(line.substr(6));
+    std::vector<std::string> command;
+    int scenes = 0;
+    bool flags = false;
+    for (std::string word; words >> word;) {
+      flags |= word.starts_with("-");
+      scenes += !flags && !command.empty();
+      command.push_back(command.empty() || command.back() != "-o" ? word : folder.path(word));
+    }
+    const ProgramResult result = run_program(with(command, {"--size", "40x30"}));
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_TRUE(contains(result.err, std::to_string(scenes) + " scenes")) << result.err;
+    ++made;
+  }
+  EXPECT_EQ(made, 2);
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"curved.png", "papers.png"}));
 }
 
 }  // namespace
