@@ -25,6 +25,8 @@ struct SphereFieldCase {
   bool perspective, instances;
 };
 
+void PrintTo(const SphereFieldCase& field, std::ostream* out) { *out << field.name; }
+
 class SphereField : public testing::TestWithParam<SphereFieldCase> {
  protected:
   /// The field, with the area of each sphere in the picture, pixels.
