@@ -95,7 +95,8 @@ class MtlParser {
         fail(std::string(statement) + " needs one number or three, not " + in_quotes(std::string(next_word(p, end))));
       v[static_cast<std::size_t>(count)] = *value;
     }
-    if (count < 3) v[1] = v[2] = v[0];
+    if (count == 2) fail(std::string(statement) + " needs one number or three, not two");
+    if (count == 1) v[1] = v[2] = v[0];
     // CIE 1931 XYZ to linear Rec.709 with white D65: the inverse of the matrix of IEC 61966-2-1.
     if (is_xyz)
       v = {3.2404542 * v[0] - 1.5371385 * v[1] - 0.4985314 * v[2],

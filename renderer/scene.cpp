@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <set>
+#include <string_view>
 
 #include "geometry/embree_intersector.h"
 #include "geometry/open_edges.h"
@@ -54,9 +55,21 @@ void resolve_materials(const SceneDescription& scene, const Vec3d& origin, Scene
     for (const ShapeDescription& shape : group.shapes) resolve(shape);
 }
 
-/// Indices into the scene's materials of those that shapes and mesh files name.
+/// Indices into the scene's materials of those that shapes and mesh files name; what stands in a group that nothing
+/// shows does not count.
 std::set<std::uint32_t> materials_in_use(const Scene& scene) {
-  std::set<std::uint32_t> used(scene.shape_materials.begin(), scene.shape_materials.end());
+  std::set<std::uint32_t> used;
+  auto next = scene.shape_materials.begin();
+  const auto take = [&](std::size_t count, bool shown) {
+    const auto end = next + static_cast<std::ptrdiff_t>(count);
+    if (shown) used.insert(next, end);
+    next = end;
+  };
+  take(scene.description.shapes.size(), true);
+  std::set<std::string_view> shown_groups;
+  for (const GroupSummary& group : scene.summary.groups) shown_groups.insert(group.name);
+  for (const GroupDescription& group : scene.description.groups)
+    take(group.shapes.size(), shown_groups.count(group.name) > 0);
   used.erase(kOwnMaterials);
   const auto& materials = scene.description.materials;
   const auto add = [&](const std::vector<ShapeSummary>& shapes) {

@@ -1,12 +1,15 @@
-// Malformed input from outside: the program refuses it with status 2 and a message that names the file, soon, and with
-// no more memory than four times the file plus 256 MiB.
+// Malformed input from outside: the program refuses it with status 2 and a message that names file and line, soon, and
+// with no more memory than four times the file plus 256 MiB. What is odd and accepted can be rendered.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
+#include <regex>
 
 #include "app/sanitized.h"
+#include "renderer/image_file.h"
 #include "tests/app/program.h"
 #include "tests/test_data.h"
 
@@ -28,11 +31,37 @@ ProgramResult judged(const std::string& path) {
   return result;
 }
 
+/// What is wrong with a file as a whole has no line.
+constexpr const char* kOfTheWholeFile[] = {"no faces in this file", "not a PLY file: it does not begin with",
+                                           "is no scene by its name: a scene file ends in"};
+
 void expect_refused(const ProgramResult& result, const std::string& path) {
   EXPECT_EQ(result.status, 2) << result.err;
   EXPECT_EQ(result.out, "");
-  EXPECT_EQ(result.err.rfind("raytree: error: " + path, 0), 0u) << result.err;
+  const std::string head = "raytree: error: " + path + ":";
+  ASSERT_EQ(result.err.rfind(head, 0), 0u) << result.err;
+  const std::string rest = result.err.substr(head.size());
+  const bool whole = std::any_of(std::begin(kOfTheWholeFile), std::end(kOfTheWholeFile),
+                                 [&](const char* part) { return rest.rfind(std::string(" ") + part, 0) == 0; });
+  EXPECT_TRUE(whole || std::regex_search(rest, std::regex("^[1-9][0-9]*: "))) << "no line: " << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+}
+
+/// Renders an odd file: a picture without NaN or infinity, soon.
+void expect_a_picture(const std::string& path) {
+  TemporaryFolder folder;
+  const std::string picture = folder.path("a.exr");
+  const ProgramResult result =
+      run_program({"render", path, "-o", picture, "--size", "16x16", "--quiet", "--stats", folder.path("s.json")});
+  EXPECT_LT(result.seconds, kLongestRefusal);
+  EXPECT_EQ(result.status, 0) << result.err;
+  if (result.status != 0) return;
+  const DecodedImage image = read_image_file(picture);
+  EXPECT_EQ(image.width, 16);
+  EXPECT_EQ(image.height, 16);
+  for (const auto& plane : image.planes)
+    EXPECT_TRUE(std::all_of(plane.begin(), plane.end(), [](float value) { return std::isfinite(value); }));
+  EXPECT_TRUE(contains(file_text(folder.path("s.json")), "\"not_finite_samples\": 0"));
 }
 
 /// Files of the folder: all must be refused but `accepted`, which maps a file that is odd and yet a mesh to a part of
@@ -59,6 +88,7 @@ void judge_folder(const std::string& folder, const std::map<std::string, std::st
       EXPECT_EQ(result.err, "");
     else
       EXPECT_TRUE(contains(result.err, "warning: " + path) && contains(result.err, known->second)) << result.err;
+    expect_a_picture(path);
   }
   EXPECT_EQ(met, accepted.size()) << "files that should be accepted are not there";
   std::fprintf(stderr, "%s: at most %.1f MiB\n", folder.c_str(), static_cast<double>(most) / (1 << 20));
@@ -194,6 +224,76 @@ TEST(MalformedInput, LargeFilesOfTheTiniestPartsThatFailAtTheirEnd) {
     std::fprintf(stderr, "%-16s %5.2f s %4llu MiB\n", c.name, result.seconds,
                  static_cast<unsigned long long>(result.peak_memory_bytes >> 20));
     std::filesystem::remove(path);
+  }
+}
+
+/// `raytree info` on an OBJ of one triangle that uses material "a" of a library beside it.
+ProgramResult judged_with_library(const TemporaryFolder& folder, const std::string& library) {
+  const std::string mesh = folder.path("mesh.obj");
+  write_text(mesh, "mtllib " + library + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+  const ProgramResult result = run_program({"info", mesh});
+  EXPECT_LT(result.seconds, kLongestRefusal);
+  if (!kSanitized) {
+    EXPECT_LE(result.peak_memory_bytes, memory_limit(std::filesystem::file_size(folder.path(library))));
+  }
+  return result;
+}
+
+void judge_library(const TemporaryFolder& folder, const std::string& library, const std::string& refusal,
+                   const std::string& warning) {
+  SCOPED_TRACE(library);
+  const ProgramResult result = judged_with_library(folder, library);
+  if (!refusal.empty()) {
+    expect_refused(result, folder.path(library));
+    EXPECT_TRUE(contains(result.err, refusal)) << result.err;
+    return;
+  }
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(warning.empty() ? result.err.empty() : contains(result.err, warning)) << result.err;
+  expect_a_picture(folder.path("mesh.obj"));
+}
+
+TEST(MalformedInput, DamagedMaterialLibraries) {
+  struct Case {
+    const char *name, *text;
+    std::string refusal, warning;  ///< a part of the one or the other; both empty: nothing is said
+  };
+  const std::string missing = "materials that no library defines";
+  TemporaryFolder folder;
+  for (const Case& c : {Case{"empty.mtl", "", "", missing},
+                        {"noname.mtl", "newmtl\nKd 1 1 1\n", "", missing},
+                        {"before.mtl", "Kd 1 1 1\nnewmtl a\n", "before the first newmtl", ""},
+                        {"word.mtl", "newmtl a\nKd red\n", "Kd needs one number or three", ""},
+                        {"infinite.mtl", "newmtl a\nKd inf nan 1\n", "Kd needs one number or three", ""},
+                        {"two.mtl", "newmtl a\nKd 1 1\n", "Kd needs one number or three, not two", ""},
+                        {"illum.mtl", "newmtl a\nillum 99\n", "illum", ""},
+                        {"map.mtl", "newmtl a\nmap_Kd picture.png\n", "", "textures dropped"},
+                        {"unknown.mtl", "newmtl a\nfoo 1\nbar\n", "", "unknown statements skipped (2 "},
+                        {"huge.mtl", "newmtl a\nKd 1e38 1e38 1e38\nKs 1e300\nNs 1e30\nNi 1e9\n", "", ""}}) {
+    write_text(folder.path(c.name), c.text);
+    judge_library(folder, c.name, c.refusal, c.warning);
+  }
+}
+
+TEST(MalformedInput, LargeMaterialLibraries) {
+  if (kSanitized) GTEST_SKIP() << "judges memory alone, which sanitizers take for themselves";
+  struct Case {
+    const char* name;
+    std::string begin, unit, end, refusal, warning;
+  };
+  const std::string zeros(1 << 16, '\0');
+  TemporaryFolder folder;
+  for (const Case& c : {Case{"name.mtl", "newmtl ", "junk", "\n", "", "materials that no library defines"},
+                        {"line.mtl", "newmtl a\nfoo", " bar", "\n", "", "unknown statements skipped"},
+                        {"zeros.mtl", "", zeros, "", "before the first newmtl", ""},
+                        {"statements.mtl", "newmtl a\n", "foo 1\n", "", "", "unknown statements skipped"},
+                        {"colors.mtl", "newmtl a\n", "Kd .5 .5 .5\n", "", "", ""},
+                        {"late.mtl", "newmtl a\n", "Kd .5 .5 .5\n", "Kd x\n", "Kd needs one number or three", ""},
+                        {"same.mtl", "", "newmtl a\n", "", "more than 65536 materials", ""},
+                        {"blank.mtl", "newmtl a\n", "# nothing\n", "Ns\n", "Ns", ""}}) {
+    write_repeated(folder.path(c.name), c.begin, c.unit, std::size_t(64) << 20, c.end);
+    judge_library(folder, c.name, c.refusal, c.warning);
+    std::filesystem::remove(folder.path(c.name));
   }
 }
 

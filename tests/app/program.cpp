@@ -55,6 +55,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
     const int empty = open("/dev/null", O_RDONLY);
     dup2(empty, STDIN_FILENO);
     if (options.close_stdout) close(STDOUT_FILENO);
+    if (options.signal) std::signal(options.signal, SIG_DFL);  // as under nohup
     for (const std::string& variable : options.environment) putenv(const_cast<char*>(variable.c_str()));
     if (!options.input_folder.empty() && chdir(options.input_folder.c_str()) != 0) _exit(126);
     execv(RAYTREE_PROGRAM, const_cast<char* const*>(words.data()));
@@ -70,7 +71,9 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
   int open_streams = 2;
   while (open_streams > 0) {
     poll(streams, 2, 5);
-    if (options.signal && !signalled && since(begin) >= options.signal_after) {
+    const bool due =
+        options.signal_on.empty() ? since(begin) >= options.signal_after : contains(result.err, options.signal_on);
+    if (options.signal && !signalled && due) {
       kill(child, options.signal);
       signalled = true;
       signal_time = Clock::now();

@@ -20,8 +20,9 @@ struct ProgramResult {
 };
 
 struct ProgramOptions {
-  int signal = 0;           ///< sent once `signal_after` has passed; 0: none
+  int signal = 0;           ///< sent once `signal_after` has passed; 0: none. What this process ignores is heard
   double signal_after = 0;  ///< seconds
+  std::string signal_on;    ///< sent once standard error holds this instead; empty: by the clock
   bool close_stdout = false;
   int terminal_columns = 0;              ///< not 0: standard error is a terminal of this width
   std::string input_folder;              ///< working folder; empty: this process's

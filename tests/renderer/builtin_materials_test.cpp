@@ -32,8 +32,11 @@ TEST(BuiltinMaterials, HaveTheNumbersOfAppendixII) {
   EXPECT_EQ(builtin_material("phong-aluminum-paint")->highlight.weight, Rgb(0.6f));
   EXPECT_EQ(builtin_material("phong-aluminum-paint")->highlight.exponent, 4);
   const HighlightDescription& metal = builtin_material("phong-polished-metal")->highlight;
-  EXPECT_EQ(metal.weight_by_angle.front().weight, Rgb(0.6f));
-  EXPECT_EQ(metal.weight_by_angle.back().weight, Rgb(0.8f));
+  ASSERT_EQ(metal.weight_by_angle.size(), 2u);
+  EXPECT_EQ(metal.weight_by_angle[0].angle, 0);
+  EXPECT_EQ(metal.weight_by_angle[0].weight, Rgb(0.6f));
+  EXPECT_EQ(metal.weight_by_angle[1].angle, 90);
+  EXPECT_EQ(metal.weight_by_angle[1].weight, Rgb(0.8f));
   EXPECT_EQ(metal.exponent, 6);
   EXPECT_EQ(builtin_materials().size(), reflectances.size() + 3);
   for (const BuiltinMaterial& material : builtin_materials()) EXPECT_EQ(material_problem(material.description), "");

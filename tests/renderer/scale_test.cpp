@@ -101,6 +101,48 @@ TEST(Scale, FloorsAndObjectsShowNoAcneAndKeepTheirShadows) {
   });
 }
 
+TEST(Scale, InstancesStandInTheirShadowsOpaqueAndOfGlass) {
+  // A box and a sphere that stand on the floor, both of one group used once; light passes two faces of each. Whether
+  // the ray to the sun meets them is known in double.
+  const int size = 24;
+  const Vec3d to_sun = unit(Vec3d(0.6, 1, 0.3)), ball(-1, 0.5, 0), low(0.5, 0, -0.3), high(1, 0.5, 0.3);
+  over_scales_and_offsets([&](double scale, const Vec3d& at) {
+    for (const float transmission : {0.0f, 0.5f}) {
+      SceneDescription scene = from_above(size, scale, at);
+      scene.materials = {material("floor", Rgb(1)), material("object", Rgb(0))};
+      scene.materials[1].transmission = Rgb(transmission);
+      scene.lights = {directional_light(-to_sun * 3.0)};
+      scene.groups.push_back(
+          {"pair",
+           {shape(SphereShape{ball, 0.5}, "object"), mesh_shape(box_mesh(Vec3f(low), Vec3f(high)), "object")},
+           {}});
+      scene.shapes = {shape(PlaneShape{at, {0, 1, 0}}, "floor"), shape(InstanceShape{"pair"}, "")};
+      scene.shapes[1].transform = scaling(Vec3d(scale)) * translation(at);
+      const RenderResult result = rendered(std::move(scene));
+      int lit = 0, shadowed = 0, wrong = 0;
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+          if (result.film.id_plane(ChannelGroup::object_id)[pixel_index(result.film, x, y)] != 1) continue;
+          const Vec3d p((x + 0.5 - size / 2.0) * 4 / size, 0, (y + 0.5 - size / 2.0) * 4 / size);
+          const double along = (ball - p).dot(to_sun), away = ((ball - p) - to_sun * along).length();
+          double enter = 0, leave = 1e9;
+          for (int axis = 0; axis < 3; ++axis) {
+            const double a = (low[axis] - p[axis]) / to_sun[axis], b = (high[axis] - p[axis]) / to_sun[axis];
+            enter = std::max(enter, std::min(a, b));
+            leave = std::min(leave, std::max(a, b));
+          }
+          if (std::abs(away - 0.5) < 1e-3 || std::abs(leave - enter) < 1e-3) continue;
+          const int crossed = 2 * (along > 0 && away < 0.5) + 2 * (leave > enter);
+          ++(crossed > 0 ? shadowed : lit);
+          wrong += std::abs(color_at(result.film, x, y).r - to_sun.y * std::pow(double(transmission), crossed)) > 1e-5;
+        }
+      EXPECT_EQ(wrong, 0) << "transmission " << transmission;
+      EXPECT_GT(lit, 200);
+      EXPECT_GT(shadowed, 15);
+    }
+  });
+}
+
 TEST(Scale, PlanesAloneLookTheSameFarFromTheOrigin) {
   // A checkered floor and a mirror wall, which have no bounds that could say where the scene is: the checker's edges,
   // the wall's foot and the mirrored floor must stay in their pixels.
