@@ -256,20 +256,6 @@ void warn_of_more_light_than_arrives(const Scene& scene, Warnings& warnings) {
   }
 }
 
-/// Bytes a triangle or sphere takes in the intersector, measured (docs/architecture.md): an estimate for `info`.
-constexpr std::uint64_t kBytesPerTriangle = 62, kBytesPerSphere = 60, kBytesPerInstance = 400;
-
-std::uint64_t estimated_intersector_bytes(const SceneSummary& summary) {
-  std::uint64_t bytes = kBytesPerInstance * summary.instances;
-  const auto add = [&](const std::vector<ShapeSummary>& shapes) {
-    for (const ShapeSummary& shape : shapes)
-      bytes += kBytesPerTriangle * shape.triangles + kBytesPerSphere * shape.spheres;
-  };
-  add(summary.shapes);
-  for (const GroupSummary& group : summary.groups) add(group.shapes);
-  return bytes;
-}
-
 std::uint64_t primitive_count(const SceneSummary& summary) {
   std::uint64_t sum = 0;
   const auto add = [&](const std::vector<ShapeSummary>& shapes) {
@@ -293,15 +279,27 @@ std::string building_text(const SceneSummary& summary) {
   return text;
 }
 
-void build_embree(const PrepareOptions& options, Scene& scene) {
+HierarchyDemand demand_of(const PrepareOptions& options, const Scene& scene) {
   std::uint64_t memory = 0;
   if (options.memory_allowed > 0)
     memory =
         options.memory_allowed > scene.summary.array_bytes ? options.memory_allowed - scene.summary.array_bytes : 1;
-  const HierarchyChoice choice = options.hierarchy.empty()
-                                     ? choose_hierarchy(hierarchy_demand(*scene.shapes, primitive_count(scene.summary),
-                                                                         expected_rays(scene.description), memory))
-                                     : hierarchy_named(options.hierarchy);
+  return hierarchy_demand(*scene.shapes, primitive_count(scene.summary), expected_rays(scene.description), memory);
+}
+
+/// Of what would be built.
+std::uint64_t estimated_intersector_bytes(const PrepareOptions& options, const Scene& scene) {
+  constexpr std::uint64_t kBytesPerInstance = 400;  // measured
+  const HierarchyDemand demand = demand_of(options, scene);
+  const HierarchyChoice choice =
+      options.hierarchy.empty() ? choose_hierarchy(demand) : hierarchy_named(options.hierarchy);
+  return static_cast<std::uint64_t>(hierarchy_bytes(*choice.chosen, demand)) +
+         kBytesPerInstance * scene.summary.instances;
+}
+
+void build_embree(const PrepareOptions& options, Scene& scene) {
+  const HierarchyChoice choice =
+      options.hierarchy.empty() ? choose_hierarchy(demand_of(options, scene)) : hierarchy_named(options.hierarchy);
   scene.summary.hierarchy = choice.reason;
   EmbreeOptions embree;
   embree.primitives = choice.chosen->primitives;
@@ -399,11 +397,13 @@ Scene prepare(SceneDescription description, const PrepareOptions& options, Warni
   }
   scene.summary.materials_in_use = {used.begin(), used.end()};
   scene.summary.features = features_in_use(scene);
-  scene.summary.intersector_bytes = estimated_intersector_bytes(scene.summary);
   warn_of_open_glass(scene, warnings);
   warn_of_more_light_than_arrives(scene, warnings);
   scene.seconds.load = seconds_since(start);
-  if (!options.build) return scene;
+  if (!options.build) {
+    scene.summary.intersector_bytes = estimated_intersector_bytes(options, scene);
+    return scene;
+  }
 
   if (options.on_phase) options.on_phase(building_text(scene.summary));
   start = Clock::now();

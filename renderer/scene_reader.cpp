@@ -17,7 +17,7 @@ using namespace reading;
 
 SceneDescription read_scene(std::string_view json, const std::string& name, const std::string& folder) {
   if (json.find_first_not_of(" \t\r\n") == json.npos)
-    throw Error(ErrorKind::bad_input, {name, 0, ""}, "the file is empty");
+    throw Error(ErrorKind::bad_input, {name, 1, ""}, "the file is empty");
   const JsonDocument document = JsonDocument::parse(json, name);
   SceneDescription scene;
   scene.name = name;

@@ -45,13 +45,6 @@ double speed_of(const HierarchyCost& cost, const HierarchyDemand& demand) {
   return kSpeedOfEmptyGrids + (cost.speed - kSpeedOfEmptyGrids) * filled;
 }
 
-double bytes_of(const HierarchyCost& cost, const HierarchyDemand& demand) {
-  const double bytes = cost.bytes * units_of(cost, demand);
-  if (cost.primitives != Primitives::grids) return bytes;
-  const std::uint64_t points = demand.grids > 0 ? demand.grid_points : 4 * grids_of(demand);
-  return bytes + double(sizeof(Vec3f)) * static_cast<double>(points);
-}
-
 double total_seconds(const HierarchyCost& cost, const HierarchyDemand& demand) {
   return cost.build_seconds * units_of(cost, demand) / 1e6 +
          demand.rays * seconds_per_ray(static_cast<double>(demand.primitives)) / speed_of(cost, demand);
@@ -68,6 +61,13 @@ void for_each_mesh(const ShapeSet& shapes, Function&& function) {
 }
 
 }  // namespace
+
+double hierarchy_bytes(const HierarchyCost& cost, const HierarchyDemand& demand) {
+  const double bytes = cost.bytes * units_of(cost, demand);
+  if (cost.primitives != Primitives::grids) return bytes;
+  const std::uint64_t points = demand.grids > 0 ? demand.grid_points : 4 * grids_of(demand);
+  return bytes + double(sizeof(Vec3f)) * static_cast<double>(points);
+}
 
 const std::vector<HierarchyCost>& hierarchy_costs() {
   using Quality = EmbreeOptions::Quality;
@@ -119,7 +119,8 @@ HierarchyChoice choose_hierarchy(const HierarchyDemand& demand) {
   double most_seconds = 0;  ///< that a later kind must stay below
   for (const HierarchyCost& cost : costs) {
     if (!cost.repeatable) continue;
-    if (demand.memory_allowed > 0 && bytes_of(cost, demand) > static_cast<double>(demand.memory_allowed)) continue;
+    if (demand.memory_allowed > 0 && hierarchy_bytes(cost, demand) > static_cast<double>(demand.memory_allowed))
+      continue;
     const double seconds = total_seconds(cost, demand);
     if (best != nullptr && seconds >= most_seconds) continue;
     // Those after the first one must save kLeastSaving of its time, and be quicker than each other by more than figures
@@ -129,14 +130,15 @@ HierarchyChoice choose_hierarchy(const HierarchyDemand& demand) {
   }
   const bool fits = best != nullptr;
   if (!fits)
-    best = &*std::min_element(costs.begin(), costs.end(),
-                              [&](const auto& a, const auto& b) { return bytes_of(a, demand) < bytes_of(b, demand); });
+    best = &*std::min_element(costs.begin(), costs.end(), [&](const auto& a, const auto& b) {
+      return hierarchy_bytes(a, demand) < hierarchy_bytes(b, demand);
+    });
   HierarchyChoice choice{best, {}};
   choice.reason =
       fmt::format("{} hierarchy for {} primitives and about {:.3g} rays:", best->name, demand.primitives, demand.rays);
   for (const HierarchyCost& cost : costs)
     choice.reason += fmt::format(" {} {:.2f} s of one core, {:.0f} MB{}", cost.name, total_seconds(cost, demand),
-                                 bytes_of(cost, demand) / 1e6, &cost == &costs.back() ? "" : ";");
+                                 hierarchy_bytes(cost, demand) / 1e6, &cost == &costs.back() ? "" : ";");
   if (!fits) choice.reason += " (more than the memory allowed)";
   return choice;
 }

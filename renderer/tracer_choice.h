@@ -51,6 +51,9 @@ struct HierarchyChoice {
   std::string reason;  ///< one line for --verbose
 };
 
+/// Bytes that a kind of hierarchy takes, ours and Embree's, estimated.
+double hierarchy_bytes(const HierarchyCost& cost, const HierarchyDemand& demand);
+
 /// Primitives of a scene and, where they may be worth the time, those of the same with triangles joined in pairs (else:
 /// as many as primitives) and as grids (else: 0). The scene's arrays must be in place.
 HierarchyDemand hierarchy_demand(const ShapeSet& shapes, std::uint64_t primitives, double rays,

@@ -140,7 +140,7 @@ TEST(ChartCommand, AnInterruptionKeepsWhatIsDone) {
   options.signal = SIGINT;
   options.signal_after = 2;
   const ProgramResult result = run_program(
-      {"chart", "cone", "-o", folder.path("chart"), "--size", "36x24", "--budget", "20s", "--threads", "1"}, options);
+      {"chart", "cone", "-o", folder.path("chart"), "--size", "72x48", "--budget", "20s", "--threads", "1"}, options);
   EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
   EXPECT_LT(result.seconds_after_signal, 1.0);
   const Json chart = chart_in(folder, "chart");

@@ -216,7 +216,7 @@ std::set<std::string> matches(const std::string& text, const std::string& patter
   return found;
 }
 
-TEST(RunScript, KnowsEveryCommandOfTheProgramAndNamesThem) {
+TEST(RunScriptCommands, KnowsEveryCommandOfTheProgramAndNamesThem) {
   const std::string help = run_program({"--help"}).out;
   const std::set<std::string> commands =
       matches(help.substr(0, help.find("Options:")).substr(help.find("Commands:") + 9), "\n  ([a-z]+) ");
