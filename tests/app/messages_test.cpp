@@ -191,7 +191,7 @@ TEST(FileMessages, OfScenesThatSayNothing) {
   EXPECT_EQ(error_line({"info", scene}), scene + ":1: missing key \"raytree\"; say \"raytree\": 1");
   for (const char* text : {"", " \n\t\r\n"}) {
     write_text(scene, text);
-    EXPECT_EQ(error_line({"info", scene}), scene + ": the file is empty");
+    EXPECT_EQ(error_line({"info", scene}), scene + ":1: the file is empty");
   }
 }
 
