@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <vector>
 
 #include "geometry/embree_intersector.h"
 #include "geometry/error.h"
