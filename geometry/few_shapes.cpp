@@ -19,12 +19,10 @@ constexpr float kBallSlack = 0x1p-19f;
 typedef float BlockOfFloats __attribute__((vector_size(kBlockRays * sizeof(float)), aligned(sizeof(float)), may_alias));
 typedef std::int32_t BlockOfFlags __attribute__((vector_size(kBlockRays * sizeof(std::int32_t))));
 typedef std::int64_t BlockOfFlagPairs __attribute__((vector_size(kBlockRays * sizeof(std::int32_t))));
-typedef std::uint32_t BlockOfIds
-    __attribute__((vector_size(kBlockRays * sizeof(float)), aligned(sizeof(float)), may_alias));
+typedef std::uint32_t BlockOfIds __attribute__((vector_size(kBlockRays * sizeof(std::uint32_t))));
+typedef float BlockOfDistances __attribute__((vector_size(kBlockRays * sizeof(float))));
 
 inline const BlockOfFloats& block(const float* values) { return *reinterpret_cast<const BlockOfFloats*>(values); }
-inline BlockOfFloats& block(float* values) { return *reinterpret_cast<BlockOfFloats*>(values); }
-inline BlockOfIds& block(std::uint32_t* values) { return *reinterpret_cast<BlockOfIds*>(values); }
 
 /// Whether any of the block's rays may meet the ball; never false for a ray that does, whatever its range. What lies in
 /// the padding counts too, which costs time and nothing else.
@@ -74,14 +72,20 @@ void for_each(const FewShapes& few, Visit&& visit) {
 /// none.
 inline void keep_nearer(GeometryId geometry, std::uint32_t primitive, const float (&distances)[kBlockRays],
                         std::size_t first, FewHits& hits) {
-  const BlockOfFloats distance = block(distances);
-  BlockOfFloats& nearest = block(hits.distance.data() + first);
-  BlockOfIds& geometries = block(hits.geometry.data() + first);
-  BlockOfIds& primitives = block(hits.primitive.data() + first);
+  // Copies of natural alignment: clang takes what it chooses between for that, whatever its type says.
+  BlockOfDistances distance, nearest;
+  BlockOfIds geometries, primitives;
+  std::memcpy(&distance, distances, sizeof(distance));
+  std::memcpy(&nearest, hits.distance.data() + first, sizeof(nearest));
+  std::memcpy(&geometries, hits.geometry.data() + first, sizeof(geometries));
+  std::memcpy(&primitives, hits.primitive.data() + first, sizeof(primitives));
   const BlockOfFlags nearer = (distance >= 0) & (distance < nearest);
   nearest = nearer ? distance : nearest;
   geometries = nearer ? geometry - BlockOfIds{} : geometries;
   primitives = nearer ? primitive - BlockOfIds{} : primitives;
+  std::memcpy(hits.distance.data() + first, &nearest, sizeof(nearest));
+  std::memcpy(hits.geometry.data() + first, &geometries, sizeof(geometries));
+  std::memcpy(hits.primitive.data() + first, &primitives, sizeof(primitives));
 }
 
 }  // namespace
