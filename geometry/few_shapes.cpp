@@ -1,6 +1,7 @@
 #include "geometry/few_shapes.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace raytree {
 namespace {
