@@ -2,6 +2,8 @@
 // no crack is open and no facet shows along their outlines.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -9,8 +11,8 @@
 #include "benchmarks/crack_rays.h"
 #include "benchmarks/curved_picture_scenes.h"
 #include "benchmarks/outline_difference.h"
-#include "benchmarks/reference_scenes.h"
 #include "benchmarks/rows.h"
+#include "renderer/scene.h"
 
 namespace raytree::benchmarks {
 namespace {
@@ -92,8 +94,9 @@ std::vector<Figure> surface_figures(const CurvedPicture& picture) {
   const std::uint64_t triangles = triangles_of(scene);
 
   std::vector<Figure> figures;
-  Figure size = figure_of(picture, fmt::format("Embree's bytes a triangle, {:.2f} M triangles", triangles / kMillion),
-                          static_cast<double>(scene.intersector->memory_bytes()) / static_cast<double>(triangles));
+  Figure size = figure_of(
+      picture, fmt::format("Embree's bytes a triangle, {:.2f} M triangles", static_cast<double>(triangles) / kMillion),
+      static_cast<double>(scene.intersector->memory_bytes()) / static_cast<double>(triangles));
   size.unit = "B";
   size.note = scene.summary.hierarchy;
   figures.push_back(std::move(size));

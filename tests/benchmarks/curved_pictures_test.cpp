@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <filesystem>
+#include <memory>
 
 #include "benchmarks/crack_rays.h"
 #include "benchmarks/curved_picture_scenes.h"
@@ -11,6 +11,7 @@
 #include "benchmarks/samples/cages.h"
 #include "geometry/embree_intersector.h"
 #include "renderer/mesh_scene.h"
+#include "renderer/scene.h"
 #include "renderer/scene_reader.h"
 #include "tests/temporary_folder.h"
 
