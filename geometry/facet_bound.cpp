@@ -56,7 +56,7 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-PixelBound::PixelBound(const TessellationView& view, const Vec3d& origin, std::span<const Vec3d> points)
+PixelBound::PixelBound(const TessellationView& view, const Vec3d& origin, const std::array<Vec3d, 16>& points)
     : view_(view), stretch_(largest_stretch(view.to_world)) {
   using Projection = TessellationView::Projection;
   if (view.projection == Projection::any_direction) {

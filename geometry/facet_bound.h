@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 
 #include "geometry/bezier_patch.h"
 #include "geometry/facet_deviation.h"
@@ -12,12 +11,12 @@
 
 namespace raytree {
 
-/// Bounds TessellationView::pixels() over the convex hull of some points, at most 16, of a surface's space, relative to
+/// Bounds TessellationView::pixels() over the convex hull of 16 points of a surface's space, relative to
 /// its `origin`: by the projections of the points and the least depth among them. Where the hull reaches behind the eye
 /// and into the view there is no bound, and all are infinite.
 class PixelBound {
  public:
-  PixelBound(const TessellationView& view, const Vec3d& origin, std::span<const Vec3d> points);
+  PixelBound(const TessellationView& view, const Vec3d& origin, const std::array<Vec3d, 16>& points);
 
   double of(const Vec3d& displacement) const;
   double of_any(double length) const;  ///< of a displacement so long in any direction
