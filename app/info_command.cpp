@@ -130,7 +130,11 @@ std::vector<NormalRow> normal_rows(const TessellationSummary& made) {
 /// In units of the tolerance.
 constexpr double kNotableSeam = 0.1;
 
-double share_over(const NormalError& error) { return error.facets > 0 ? double(error.over) / double(error.facets) : 0; }
+/// Of the facets of a NormalError or a ProvedDistance.
+template <class Facets>
+double share_over(const Facets& error) {
+  return error.facets > 0 ? double(error.over) / double(error.facets) : 0;
+}
 
 Json json_of(const TessellationSummary& made) {
   Json json = {
@@ -144,6 +148,9 @@ Json json_of(const TessellationSummary& made) {
               {"largest_distance", made.measured->largest.distance},
               {"largest_normal_angle_degrees", made.measured->largest.angle * kDegrees},
               {"seam_pixels", made.measured->seam}};
+  const ProvedDistance& proved = made.measured->proved;
+  measured["proved"] = {
+      {"triangles", proved.facets}, {"largest_pixels", proved.pixels}, {"share_over_tolerance", share_over(proved)}};
   for (const NormalRow& row : normal_rows(made)) {
     Json& normals = measured["normals"][row.key];
     normals = {{"triangles", row.error.facets},
@@ -241,8 +248,8 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 
 /// Rows for each curved shape, the scene's and those of groups: of distance, then of normals by what they are held to.
 std::string tessellation_text(const SceneSummary& summary) {
-  std::vector<std::vector<std::string>> rows = {
-      {"name", "faces", "triangles", "memory", "coarse", "samples", "pixels off", "units off", "seams"}};
+  std::vector<std::vector<std::string>> rows = {{"name", "faces", "triangles", "memory", "coarse", "samples",
+                                                 "pixels off", "units off", "seams", "proved", "at most", "over"}};
   std::vector<std::vector<std::string>> normals = {
       {"name", "class", "triangles", "normal off", "shading off", "held to", "over the tolerance"}};
   std::vector<std::string> notes, unseen;
@@ -256,7 +263,9 @@ std::string tessellation_text(const SceneSummary& summary) {
       rows.push_back({group + shape.name, grouped(made.faces), grouped(made.triangles), readable_bytes(made.bytes),
                       grouped(made.coarse_faces), grouped(made.measured->samples),
                       fmt::format("{:.4f}", largest.pixels), fmt::format("{:.3g}", largest.distance),
-                      fmt::format("{:.4f}", made.measured->seam)});
+                      fmt::format("{:.4f}", made.measured->seam), grouped(made.measured->proved.facets),
+                      fmt::format("{:.4f}", made.measured->proved.pixels),
+                      fmt::format("{:.2f} %", 100 * share_over(made.measured->proved))});
       if (made.tolerance && made.measured->seam > kNotableSeam * *made.tolerance)
         notes.push_back(group + shape.name +
                         ": its faces disagree about where they meet by as many pixels as \"seams\" says; no facets lie "

@@ -120,6 +120,13 @@ class SampledFacet {
   /// Between the normals at its corners: the chord of the largest angle.
   double bend() const { return corner_turn_; }
 
+  /// Unit; zero for a facet without area.
+  const Vec3d& normal() const { return normal_; }
+  /// The share of a displacement along the facet that counts, at most.
+  double sideways() const { return ends_surface() ? 1 : bend_; }
+  /// Whether one of its edges is hard.
+  bool ends_surface() const { return hard_[0] || hard_[1] || hard_[2]; }
+
   /// At the surface's point of barycentric coordinates `weights` in the face's parameters.
   FacetDeviation at(const SurfaceSample& truth, const std::array<double, 3>& weights) const {
     const Vec3d p(truth.position);

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "geometry/facet_bound.h"
 #include "geometry/facet_pattern_set.h"
 #include "geometry/polynomial_rates.h"
 
@@ -16,12 +19,12 @@ namespace {
 constexpr std::size_t kFacetsAtOnce = 128;
 
 /// Triangles [begin, end) of one face, which start at `first` in the mesh; facets: the pattern's, as the mesh has them;
-/// boundary: [boundary points] the face's own.
+/// boundary: [boundary points] the face's own. polynomial: the face, null where it is none.
 TessellationError measure(const ParametricSurface& surface, std::size_t face, const FacetPattern& pattern,
                           const std::vector<std::uint32_t>& facets, const std::vector<std::uint8_t>& hard,
                           const std::vector<SurfaceSample>& boundary, const TriangleMesh& mesh, std::size_t first,
                           std::size_t begin, std::size_t end, const TessellationView& view, double tolerance,
-                          bool regular) {
+                          bool regular, const BezierPatch* polynomial) {
   const std::size_t sides = surface.sides(face).size();
   const FaceDomain domain = surface.domain(face);
   std::vector<Vec2f> parameters((end - begin) * kSamplesPerFacet);
@@ -52,6 +55,12 @@ TessellationError measure(const ParametricSurface& surface, std::size_t face, co
     NormalError& normals = facet.is_small() ? error.small : regular ? error.regular : error.irregular;
     normals.include({1, largest.shading > tolerance ? 1u : 0u, largest.angle, largest.shading});
     error.largest.include(largest);
+    if (polynomial == nullptr || facet.ends_surface()) continue;
+    const std::uint32_t* const c = &facets[3 * f];
+    const FacetBound bound(*polynomial, view, surface.origin(),
+                           {pattern.parameters[c[0]], pattern.parameters[c[1]], pattern.parameters[c[2]]});
+    const double most = bound.pixels(facet);
+    error.proved.include({1, most > tolerance ? 1u : 0u, most, largest.pixels - most});
   }
   error.triangles = end - begin;
   error.samples = samples.size();
@@ -111,6 +120,8 @@ TessellationError measure_tessellation(const ParametricSurface& surface, const T
           const std::vector<std::uint32_t>& corners =
               has_collapsed_side(surface.sides(face)) ? with_area : pattern.facets;
           const bool regular = is_regular(surface, face);
+          std::optional<BezierPatch> polynomial(std::in_place);
+          if (!surface.polynomial_patch(face, *polynomial)) polynomial.reset();
           std::vector<SurfaceSample> boundary(pattern.boundary_count);
           surface.evaluate(face, std::span(pattern.parameters).first(pattern.boundary_count), boundary);
           ++error.faces;
@@ -119,7 +130,8 @@ TessellationError measure_tessellation(const ParametricSurface& surface, const T
               [&](const Range& facets, TessellationError so_far) {
                 for (std::size_t begin = facets.begin(); begin < facets.end(); begin += kFacetsAtOnce)
                   so_far.include(measure(surface, face, pattern, corners, hard, boundary, mesh, first[face], begin,
-                                         std::min(facets.end(), begin + kFacetsAtOnce), view, tolerance, regular));
+                                         std::min(facets.end(), begin + kFacetsAtOnce), view, tolerance, regular,
+                                         polynomial ? &*polynomial : nullptr));
                 return so_far;
               },
               merged_errors));

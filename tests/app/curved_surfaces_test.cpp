@@ -67,6 +67,7 @@ TEST(CurvedSurfaceFlags, TessellationIsMeasuredOnRequest) {
     EXPECT_GE(normals[kind]["share_over_tolerance"].get<double>(), 0);
   }
   EXPECT_EQ(judged, record["triangles"].get<std::uint64_t>());
+  EXPECT_EQ(record["measured"]["proved"]["triangles"], 0) << "no face of a cube is one polynomial";
   // All faces of a cube meet vertices of three: held to eight times the tolerance.
   EXPECT_EQ(normals["regular"]["triangles"], 0);
   EXPECT_EQ(normals["irregular"]["bound_shading_pixels"], 2);
@@ -79,7 +80,8 @@ TEST(CurvedSurfaceFlags, TessellationIsMeasuredOnRequest) {
   EXPECT_FALSE(s.info({})["objects"][0]["tessellation"].contains("measured"));
   const ProgramResult text = run_program({"info", s.scene, "--tessellation"});
   ASSERT_EQ(text.status, 0);
-  for (const char* part : {"tessellation", "pixels off", "normals", "irregular", "held to", "2.0000"})
+  for (const char* part :
+       {"tessellation", "pixels off", "normals", "irregular", "held to", "2.0000", "proved", "at most"})
     EXPECT_TRUE(contains(text.out, part)) << text.out;
 }
 

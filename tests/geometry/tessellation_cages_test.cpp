@@ -2,6 +2,7 @@
 // and normals by class.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "geometry/error.h"
@@ -57,10 +58,12 @@ void expect_within(const std::string& name, const ParametricSurface& surface, do
   const TessellationError& error = outcome.error;
   std::printf(
       "%-32s %8zu triangles, %.3f px off; shading: regular %7zu, %.3f px; irregular %7zu, %.3f px, %.1f %% over; "
-      "small %7zu, %.3f px, %.1f %% over; %zu coarse, seams of %.3f px\n",
+      "small %7zu, %.3f px, %.1f %% over; %zu coarse, seams of %.3f px; proved %zu, %.3f px, %.1f %% over\n",
       name.c_str(), outcome.triangles, error.largest.pixels, std::size_t(error.regular.facets), error.regular.shading,
       std::size_t(error.irregular.facets), error.irregular.shading, share_over(error.irregular),
-      std::size_t(error.small.facets), error.small.shading, share_over(error.small), outcome.coarse, error.seam);
+      std::size_t(error.small.facets), error.small.shading, share_over(error.small), outcome.coarse, error.seam,
+      std::size_t(error.proved.facets), error.proved.pixels,
+      100.0 * double(error.proved.over) / std::max(1.0, double(error.proved.facets)));
   // Where a surface's faces disagree about where they meet, as they do at Chaikin's creases, no facets keep to both.
   EXPECT_LE(error.largest.pixels, tolerance + error.seam);
   EXPECT_LE(error.regular.shading, tolerance);
@@ -69,6 +72,8 @@ void expect_within(const std::string& name, const ParametricSurface& surface, do
   if (name.find("chaikin") == std::string::npos) {
     EXPECT_LE(error.seam, 1e-3);
   }
+  // What is proved and what is sampled agree, but for the rounding of coordinates of some hundred pixels.
+  EXPECT_LE(error.proved.exceeded, 1e-3);
   EXPECT_EQ(error.triangles, outcome.triangles);
   EXPECT_EQ(error.regular.facets + error.irregular.facets + error.small.facets, outcome.triangles);
 }
