@@ -114,6 +114,46 @@ TEST(Layering, LibrariesNeitherPrintNorEndTheProcess) {
       }
 }
 
+TEST(Layering, LibrariesLinkWhatTheyWrapPrivately) {
+  const std::regex wrapped("embree|OpenSubdiv|nlohmann|OpenColorIO|OpenImageIO|OpenEXR|PNG|TBB", std::regex::icase);
+  int private_ones = 0;
+  for (const char* file :
+       {"/geometry/CMakeLists.txt", "/renderer/CMakeLists.txt", "/renderer/image_io/CMakeLists.txt"}) {
+    if (!fs::exists(std::string(RAYTREE_SOURCE_DIR) + file)) continue;
+    std::string keyword;
+    std::istringstream words(file_text(std::string(RAYTREE_SOURCE_DIR) + file));
+    for (std::string word; words >> word;) {
+      if (contains(word, "(")) keyword.clear();
+      if (word == "PUBLIC" || word == "PRIVATE" || word == "INTERFACE") keyword = word;
+      if (!contains(word, "::") && word != "embree") continue;
+      if (!std::regex_search(word, wrapped)) continue;
+      EXPECT_FALSE(keyword == "PUBLIC" || keyword == "INTERFACE") << file << " hands on " << word;
+      private_ones += keyword == "PRIVATE";
+    }
+  }
+  EXPECT_GE(private_ones, 6);
+}
+
+TEST(Build, PresetsAreThoseThatAreDocumented) {
+  const nlohmann::json presets = nlohmann::json::parse(file_text(RAYTREE_SOURCE_DIR "/CMakePresets.json"));
+  const auto variables_of = [&](const std::string& name) {
+    for (const nlohmann::json& preset : presets.at("configurePresets"))
+      if (preset.at("name") == name) return preset.value("cacheVariables", nlohmann::json::object());
+    ADD_FAILURE() << "no preset " << name;
+    return nlohmann::json::object();
+  };
+  EXPECT_EQ(variables_of("release").value("RAYTREE_NATIVE", ""), "ON") << "for the machine at hand";
+  EXPECT_EQ(variables_of("portable").value("RAYTREE_NATIVE", ""), "OFF");
+  for (const char* name : {"release", "portable"})
+    EXPECT_EQ(variables_of(name).value("CMAKE_BUILD_TYPE", ""), "Release");
+  EXPECT_EQ(variables_of("debug").value("CMAKE_BUILD_TYPE", ""), "Debug");
+  EXPECT_EQ(variables_of("asan").value("RAYTREE_SANITIZE", ""), "address,undefined");
+  for (const char* name : {"asan", "clang"}) {
+    EXPECT_EQ(variables_of(name).value("CMAKE_CXX_COMPILER", ""), "clang++") << name;
+    EXPECT_EQ(variables_of(name).value("RAYTREE_WARNINGS_AS_ERRORS", ""), "ON") << name;
+  }
+}
+
 TEST(Build, EverySourceIsCompiledWithFloatingPointAsWritten) {
   // The program lies in the build's folder for programs.
   const fs::path commands = fs::path(RAYTREE_PROGRAM).parent_path().parent_path() / "compile_commands.json";
