@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "renderer/tracer_choice.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree {
@@ -97,9 +98,10 @@ SceneDescription vertex_scene(int grid) {
   return scene;
 }
 
-void expect_the_same_picture_always(SceneDescription description, const std::string& what) {
+void expect_the_same_picture_always(SceneDescription description, const std::string& what,
+                                    const PrepareOptions& preparing = {}) {
   const tbb::global_control more_threads(tbb::global_control::max_allowed_parallelism, 7);
-  const Scene scene = prepared(std::move(description));
+  const Scene scene = prepared(std::move(description), nullptr, preparing);
   RenderOptions options;
   options.channels = all_channels();
   options.threads = 1;
@@ -183,6 +185,32 @@ TEST(Determinism, PicturesOfRaysAimedAtVerticesAreBitIdentical) {
   expect_the_same_picture_always(vertex_scene(2), "vertices, grid:2");
 }
 
+/// What Embree is given in place of triangles, and its compact hierarchies: every kind that a scene may be given
+/// without asking for it.
+const std::vector<std::string>& repeatable_hierarchies() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> result;
+    for (const HierarchyCost& cost : hierarchy_costs())
+      if (cost.repeatable) result.push_back(cost.name);
+    return result;
+  }();
+  return names;
+}
+
+TEST(Determinism, PicturesOfEveryHierarchyAreBitIdentical) {
+  EXPECT_GE(repeatable_hierarchies().size(), 5u);
+  for (const std::string& hierarchy : repeatable_hierarchies()) {
+    PrepareOptions preparing;
+    preparing.hierarchy = hierarchy;
+    expect_the_same_picture_always(vertex_scene(1), "vertices, " + hierarchy, preparing);
+    if (hierarchy != "grids") continue;  // what is furthest from triangles, sampled adaptively too
+    SceneDescription scene = vertex_scene(1);
+    scene.render.antialias.method = Antialiasing::Method::whitted;
+    scene.render.adaptive = {0.02, 2, 1};
+    expect_the_same_picture_always(std::move(scene), "vertices, whitted, grids", preparing);
+  }
+}
+
 /// Adds things that samples may miss: specks, a wire, a disc seen nearly from its edge.
 SceneDescription with_small_objects(SceneDescription scene) {
   for (int i = 0; i < 200; ++i)
@@ -232,20 +260,23 @@ TEST(Determinism, PreparingWithOtherThreadCountsGivesTheSamePicture) {
   const tbb::global_control more_threads(tbb::global_control::max_allowed_parallelism, 7);
   RenderOptions options;
   options.channels = all_channels();
-  std::optional<RenderResult> reference;
-  for (const int threads : {1, 2, 3, 7}) {
-    SceneDescription description = busy_scene();
-    description.shapes.push_back(mesh_shape(globe_mesh(3, 120, 60), "dull", NormalSource::smooth));
-    description.shapes.back().transform = translation({0, 2, -6});
-    PrepareOptions preparing;
-    preparing.threads = threads;
-    tbb::task_arena arena(threads);
-    Scene scene = arena.execute([&] { return prepared(std::move(description), nullptr, preparing); });
-    RenderResult result = render(scene, options);
-    if (!reference)
-      reference.emplace(std::move(result));
-    else
-      EXPECT_EQ(differing_pixels(reference->film, result.film), 0u) << threads;
+  for (const std::string& hierarchy : repeatable_hierarchies()) {
+    std::optional<RenderResult> reference;
+    for (const int threads : {1, 2, 3, 7}) {
+      SceneDescription description = busy_scene();
+      description.shapes.push_back(mesh_shape(globe_mesh(3, 120, 60), "dull", NormalSource::smooth));
+      description.shapes.back().transform = translation({0, 2, -6});
+      PrepareOptions preparing;
+      preparing.threads = threads;
+      preparing.hierarchy = hierarchy;
+      tbb::task_arena arena(threads);
+      Scene scene = arena.execute([&] { return prepared(std::move(description), nullptr, preparing); });
+      RenderResult result = render(scene, options);
+      if (!reference)
+        reference.emplace(std::move(result));
+      else
+        EXPECT_EQ(differing_pixels(reference->film, result.film), 0u) << hierarchy << " threads " << threads;
+    }
   }
 }
 
