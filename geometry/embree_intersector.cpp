@@ -383,22 +383,30 @@ void EmbreeIntersector::name_triangles_of_quads(std::size_t count, HitBatch& hit
   };
   for (std::size_t first = 0; first < count; first += kLanes) {
     IntegerLaneVector triangle = {}, halves = {}, is_quad = {}, primitive;
+    std::memcpy(&primitive, hits.primitive + first, sizeof(primitive));
     const auto look_up = [&](std::size_t lane, const QuadList& list) {
       const std::uint32_t quad = hits.primitive[first + lane];
-      is_quad[lane] = 1, triangle[lane] = list.first[quad], halves[lane] = list.halves[quad].bits();
+      is_quad[lane] = 1, triangle[lane] = list.first_triangle(quad), halves[lane] = list.halves[quad].bits();
     };
     const GeometryId* const geometry = hits.geometry + first;
     if (!state.instanced && first + kLanes <= count && std::equal(geometry + 1, geometry + kLanes, geometry)) {
       // Neighbors mostly hit one mesh, or nothing.
       const QuadList* const list = quads_at(*geometry, kNoInstance);
       if (list == nullptr) continue;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) look_up(lane, *list);
+      if (list->first.empty()) {
+        const std::uint32_t* const quad = hits.primitive + first;
+        alignas(32) std::uint32_t bits[kLanes];
+        for (std::size_t lane = 0; lane < kLanes; ++lane) bits[lane] = list->halves[quad[lane]].bits();
+        std::memcpy(&halves, bits, sizeof(halves));
+        is_quad += 1u, triangle = 2 * primitive;
+      } else {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) look_up(lane, *list);
+      }
     } else {
       for (std::size_t lane = 0; lane < std::min(kLanes, count - first); ++lane)
         if (const QuadList* const list = quads_at(geometry[lane], hits.instance[first + lane])) look_up(lane, *list);
     }
     LaneVector u, v;
-    std::memcpy(&primitive, hits.primitive + first, sizeof(primitive));
     std::memcpy(&u, hits.u + first, sizeof(u));
     std::memcpy(&v, hits.v + first, sizeof(v));
     LaneVector u_there = u, v_there = v;

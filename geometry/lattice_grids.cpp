@@ -132,7 +132,8 @@ void add_pairs(std::span<const std::uint32_t> corners, std::span<const Vec3f> po
     point[0] = positions[corner[0]], point[1] = positions[corner[1]];
     point[2] = positions[corner[3]], point[3] = positions[corner[2]];
     grids.copied[first_grid + quad] = {static_cast<std::uint32_t>(first_point + 4 * quad), 2, 2, 2};
-    grids.pairs.first[first + quad] = static_cast<std::uint32_t>(begin + quads.first[quad]);
+    grids.pairs.first[first + quad] =
+        static_cast<std::uint32_t>(begin + quads.first_triangle(static_cast<std::uint32_t>(quad)));
     grids.pairs.halves[first + quad] = quads.halves[quad];
   });
 }

@@ -52,12 +52,17 @@ void pair_block(const std::uint32_t* corners, std::size_t begin, std::size_t end
 
 std::size_t blocks_of(std::size_t triangles) { return (triangles + kBlockOfTriangles - 1) / kBlockOfTriangles; }
 
-std::size_t quads_of_block(std::span<const std::uint32_t> corners, std::size_t block) {
+struct BlockOfQuads {
+  std::size_t quads = 0;
+  bool neighbors = true;  ///< each quad is of a triangle and the next one
+};
+
+BlockOfQuads quads_of_block(std::span<const std::uint32_t> corners, std::size_t block) {
   const std::size_t begin = block * kBlockOfTriangles;
-  std::size_t count = 0;
+  BlockOfQuads found;
   pair_block(corners.data(), begin, std::min(corners.size() / 3, begin + kBlockOfTriangles),
-             [&](std::size_t, std::size_t) { ++count; });
-  return count;
+             [&](std::size_t, std::size_t behind) { ++found.quads, found.neighbors &= behind == 1; });
+  return found;
 }
 
 }  // namespace
@@ -67,7 +72,7 @@ std::size_t estimate_joined_quads(std::span<const std::uint32_t> corners) {
   const std::size_t step = std::max<std::size_t>(1, blocks / kBlocksLookedAt);
   std::size_t quads = 0, of = 0;
   for (std::size_t block = 0; block < blocks; block += step) {
-    quads += quads_of_block(corners, block);
+    quads += quads_of_block(corners, block).quads;
     of += std::min(triangles - block * kBlockOfTriangles, kBlockOfTriangles);
   }
   if (of == triangles) return quads;
@@ -77,17 +82,19 @@ std::size_t estimate_joined_quads(std::span<const std::uint32_t> corners) {
 
 QuadList joined_quads(std::span<const std::uint32_t> corners) {
   const std::size_t triangles = corners.size() / 3;
-  std::vector<std::size_t> begins(blocks_of(triangles));
-  tbb::parallel_for(std::size_t(0), begins.size(),
-                    [&](std::size_t block) { begins[block] = quads_of_block(corners, block); });
+  std::vector<BlockOfQuads> blocks(blocks_of(triangles));
+  tbb::parallel_for(std::size_t(0), blocks.size(),
+                    [&](std::size_t block) { blocks[block] = quads_of_block(corners, block); });
+  std::vector<std::size_t> begins;
   std::size_t count = 0;
-  for (std::size_t& begin : begins) {
-    const std::size_t size = begin;
-    begin = count, count += size;
+  bool neighbors = true;
+  for (const BlockOfQuads& block : blocks) {
+    begins.push_back(count);
+    count += block.quads, neighbors &= block.neighbors;
   }
   QuadList quads;
   quads.corners.resize(4 * count);
-  quads.first.resize(count);
+  if (!neighbors) quads.first.resize(count);
   quads.halves.resize(count);
   quads.paired = triangles - count;
   tbb::parallel_for(std::size_t(0), begins.size(), [&](std::size_t block) {
@@ -97,7 +104,7 @@ QuadList joined_quads(std::span<const std::uint32_t> corners) {
                [&](std::size_t triangle, std::size_t behind) {
                  const std::uint32_t* a = &corners[3 * triangle];
                  std::uint32_t* out = &quads.corners[4 * quad];
-                 quads.first[quad] = static_cast<std::uint32_t>(triangle);
+                 if (!neighbors) quads.first[quad] = static_cast<std::uint32_t>(triangle);
                  if (behind == 0) {
                    out[0] = a[0], out[1] = a[1], out[2] = out[3] = a[2];
                    quads.halves[quad] = QuadHalves();

@@ -30,11 +30,13 @@ struct QuadList {
   /// [quad][4]: the quad's triangles are its corners (0, 1, 3) and (2, 3, 1), as Embree halves a quad. A triangle that
   /// found no partner has corners 2 and 3 alike.
   Buffer<std::uint32_t> corners;
-  Buffer<std::uint32_t> first;  ///< [quad] its first triangle
-  Buffer<QuadHalves> halves;    ///< [quad]
-  std::size_t paired = 0;       ///< quads of two triangles
+  /// [quad] its first triangle. Empty: quad q is of triangles 2q and 2q + 1 for all q, as in what was made of quads.
+  Buffer<std::uint32_t> first;
+  Buffer<QuadHalves> halves;  ///< [quad]
+  std::size_t paired = 0;     ///< quads of two triangles
 
-  std::size_t size() const { return first.size(); }
+  std::size_t size() const { return halves.size(); }
+  std::uint32_t first_triangle(std::uint32_t quad) const { return first.empty() ? 2 * quad : first[quad]; }
   std::size_t memory_bytes() const { return array_bytes(corners) + array_bytes(first) + array_bytes(halves); }
 };
 
@@ -71,7 +73,7 @@ inline void find_triangle_point(const Integers& halves, Integers& triangle, Real
 
 /// The same of a point of `quad`.
 inline TrianglePoint triangle_point(const QuadList& quads, std::uint32_t quad, float u, float v) {
-  TrianglePoint point{quads.first[quad], u, v};
+  TrianglePoint point{quads.first_triangle(quad), u, v};
   find_triangle_point(quads.halves[quad].bits(), point.triangle, point.u, point.v);
   return point;
 }

@@ -92,6 +92,18 @@ TEST(QuadPairs, DependOnNoThreads) {
   EXPECT_EQ(many.first, single.first);
 }
 
+TEST(QuadPairs, ThatFollowEachOtherNeedNoListOfTriangles) {
+  const TriangleMesh terrain = make_terrain({60000, 10, 0.6, 0.5, 7});  // several blocks
+  const QuadList quads = joined_quads(terrain.corners);
+  EXPECT_EQ(2 * quads.paired, terrain.triangle_count());
+  EXPECT_EQ(quads.memory_bytes(), quads.size() * (4 * 4 + 1));
+  for (std::uint32_t quad = 0; quad < quads.size(); ++quad) ASSERT_EQ(quads.first_triangle(quad), 2 * quad);
+  // The same less its first triangle: nothing is where it was.
+  const QuadList others = joined_quads(std::span(terrain.corners).subspan(3));
+  EXPECT_EQ(others.first.size(), others.size());
+  EXPECT_LT(others.paired, quads.paired);
+}
+
 /// Rays from above, at the terrain, the same for both tracers.
 void expect_same_hits(const ShapeSet& shapes, Random& random, const Vec3f& reach) {
   EmbreeOptions options;
