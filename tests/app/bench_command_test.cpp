@@ -1,6 +1,8 @@
 // `raytree bench` from outside: what it prints as text and JSON, what its flags choose, what it refuses.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -100,6 +102,17 @@ TEST(BenchCommand, KeepsToATimeAndSaysWhatItLeavesOut) {
   EXPECT_TRUE(contains(result.out, "left out: terrain of 10 M: it would take")) << result.out;
   EXPECT_TRUE(contains(result.out, "scene spd-balls")) << result.out;
   EXPECT_LT(result.seconds, 60);
+}
+
+TEST(BenchCommand, AReportThatCannotBeWrittenIsAFailure) {
+  for (const char* more : {"--json", "--quiet"}) {
+    const std::string line = std::string(RAYTREE_PROGRAM) +
+                             " bench cone --size 16x12 --repetitions 1 --filter primary/seam " + more +
+                             " >/dev/full 2>/dev/null";
+    const int status = std::system(line.c_str());
+    EXPECT_TRUE(WIFEXITED(status)) << line;
+    EXPECT_EQ(WEXITSTATUS(status), 1) << line;
+  }
 }
 
 TEST(BenchCommand, WrongInputIsNamed) {
