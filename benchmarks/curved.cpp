@@ -8,14 +8,13 @@
 #include <cmath>
 #include <random>
 
+#include "benchmarks/bumpy_torus.h"
 #include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
-#include "geometry/angle.h"
 #include "geometry/embree_kinds.h"
 #include "geometry/patch_surface.h"
 #include "geometry/polygon_mesh.h"
 #include "geometry/stopwatch.h"
-#include "geometry/subdivision_refinement.h"
 #include "geometry/subdivision_surface.h"
 #include "geometry/tessellation.h"
 #include "geometry/tessellation_rates.h"
@@ -25,7 +24,7 @@ namespace {
 
 using Surface = std::unique_ptr<ParametricSurface>;
 
-constexpr int kRepetitions = 5;
+constexpr int kRepetitionsOfSurfaces = 5;
 constexpr int kRepetitionsOfKinds = 3;  // each builds a million triangles twice
 constexpr double kMillion = 1e6;
 
@@ -35,44 +34,9 @@ double seconds_of(const std::function<void()>& work) {
   return seconds_since(start);
 }
 
-Vec3f on_torus(double a, double b) {
-  const double turn = 2 * kPi, r = 3 + std::cos(turn * b) + 0.02 * std::sin(40 * turn * a);
-  return Vec3f(Vec3d(r * std::cos(turn * a), std::sin(turn * b), -r * std::sin(turn * a)));
-}
-
-/// A closed cage of quads or, halved, of triangles; texture coordinates with a seam where the torus closes.
-PolygonMesh torus_cage(std::uint32_t around, std::uint32_t across, bool triangles, bool textured) {
-  PolygonMesh mesh;
-  for (std::uint32_t i = 0; i < around; ++i)
-    for (std::uint32_t j = 0; j < across; ++j)
-      mesh.positions.push_back(on_torus(double(i) / around, double(j) / across));
-  if (textured)
-    for (std::uint32_t i = 0; i <= around; ++i)
-      for (std::uint32_t j = 0; j <= across; ++j)
-        mesh.texture_coordinates.emplace_back(float(i) / float(around), float(j) / float(across));
-  const auto corner = [&](std::uint32_t i, std::uint32_t j) {
-    mesh.corners.push_back((i % around) * across + j % across);
-    if (textured) mesh.texture_corners.push_back(i * (across + 1) + j);
-  };
-  for (std::uint32_t i = 0; i < around; ++i)
-    for (std::uint32_t j = 0; j < across; ++j) {
-      corner(i, j), corner(i + 1, j), corner(i + 1, j + 1);
-      if (triangles) corner(i, j), corner(i + 1, j + 1);
-      corner(i, j + 1);
-    }
-  if (!triangles) mesh.face_sizes.assign(std::size_t(around) * across, 4);
-  return mesh;
-}
-
 Surface cage_surface(const PolygonMesh& mesh) {
   Warnings warnings;
   return make_subdivision_surface(mesh, {}, {}, warnings);
-}
-
-/// Quads, each with one vertex of valence 3 and one of valence 6 or so: triangles, refined once.
-PolygonMesh irregular_cage(bool textured) {
-  Warnings warnings;
-  return refine_uniformly(torus_cage(41, 41, true, textured), {}, 1, RefinedPoints::control, {}, warnings);
 }
 
 /// Patches over the torus, 50 x 50.
@@ -83,7 +47,7 @@ Surface patch_surface(const MakePatch& make_patch) {
   for (int i = 0; i < kPatches; ++i)
     for (int j = 0; j < kPatches; ++j)
       patches.emplace_back(make_patch(
-          [=](int u, int v) { return Vec3d(on_torus((i + u / 3.0) / kPatches, (j + v / 3.0) / kPatches)); }));
+          [=](int u, int v) { return Vec3d(on_bumpy_torus((i + u / 3.0) / kPatches, (j + v / 3.0) / kPatches)); }));
   Warnings warnings;
   return std::make_unique<PatchSurface>(std::move(patches), PatchSurfaceOptions(), SourceLocation(), warnings);
 }
@@ -109,7 +73,7 @@ Figure points_figure(const Kind& kind) {
   const double set_up = seconds_of([&] { surface = kind.make(); });
   std::size_t points = 0;
   std::vector<double> rates;
-  for (int i = 0; i <= kRepetitions; ++i) {
+  for (int i = 0; i <= kRepetitionsOfSurfaces; ++i) {
     const double seconds = seconds_of([&] { points = tessellate_uniformly(*surface, kind.rate).positions.size(); });
     if (i > 0) rates.push_back(static_cast<double>(points) / kMillion / seconds);  // the first one warms up
   }
@@ -131,7 +95,7 @@ Figure rates_figure(const char* name, const PolygonMesh& cage, double distance) 
   const auto find = [&] { return seconds_of([&] { found = rates_for_distance(*surface, distance); }); };
   const auto make = [&] { return seconds_of([&] { triangles = tessellate(*surface, found.rates).triangle_count(); }); };
   PairLimits limits;
-  limits.least = 3, limits.most = kRepetitions;
+  limits.least = 3, limits.most = kRepetitionsOfSurfaces;
   const PairedSpread pairs = measure_pairs(find, make, limits);
   Figure figure;
   figure.row = "curved";
@@ -146,7 +110,7 @@ SurfaceGrid torus_grid(std::size_t quads) {
   grid.columns = grid.rows = quads + 1;
   for (std::size_t j = 0; j <= quads; ++j)
     for (std::size_t i = 0; i <= quads; ++i)
-      grid.points.push_back(on_torus(double(i) / double(quads), double(j) / double(quads)));
+      grid.points.push_back(on_bumpy_torus(double(i) / double(quads), double(j) / double(quads)));
   return grid;
 }
 
@@ -220,12 +184,12 @@ std::vector<Figure> measure_all(const MeasureContext& context) {
   constexpr const char* kRegularBefore = "; OpenSubdiv alone: 6-8 M/s by Bfr";
   constexpr const char* kIrregularBefore = "; OpenSubdiv alone: 4.4 M/s by Bfr";
   const Kind kinds[] = {
-      {"a regular cage", [] { return cage_surface(torus_cage(100, 100, false, false)); }, 10, kLeastRegularSpeed,
+      {"a regular cage", [] { return cage_surface(bumpy_torus_cage(100, 100, false, false)); }, 10, kLeastRegularSpeed,
        kRegularBefore},
-      {"a regular cage with texture", [] { return cage_surface(torus_cage(100, 100, false, true)); }, 10, 0, ""},
-      {"a cage with irregular vertices at each face", [] { return cage_surface(irregular_cage(false)); }, 10,
+      {"a regular cage with texture", [] { return cage_surface(bumpy_torus_cage(100, 100, false, true)); }, 10, 0, ""},
+      {"a cage with irregular vertices at each face", [] { return cage_surface(irregular_torus_cage(false)); }, 10,
        kLeastIrregularSpeed, kIrregularBefore},
-      {"the same with texture", [] { return cage_surface(irregular_cage(true)); }, 10, 0, ""},
+      {"the same with texture", [] { return cage_surface(irregular_torus_cage(true)); }, 10, 0, ""},
       {"Bezier patches", [] { return patch_surface([](const auto& point) { return bezier_through(point); }); }, 20, 0,
        ""},
       {"Coons patches",
@@ -248,8 +212,8 @@ std::vector<Figure> measure_all(const MeasureContext& context) {
     figures.push_back(points_figure(kind));
   }
   context.progress("curved: rates of a view");
-  figures.push_back(rates_figure("a regular cage", torus_cage(100, 100, false, false), 2e-4));
-  figures.push_back(rates_figure("a cage with irregular vertices at each face", irregular_cage(false), 2e-4));
+  figures.push_back(rates_figure("a regular cage", bumpy_torus_cage(100, 100, false, false), 2e-4));
+  figures.push_back(rates_figure("a cage with irregular vertices at each face", irregular_torus_cage(false), 2e-4));
   context.progress("curved: triangles, quads, grids");
   for (Figure& figure : kind_figures(704, 1280, 960)) figures.push_back(std::move(figure));
   return figures;

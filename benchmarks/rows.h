@@ -31,6 +31,7 @@ std::vector<Figure> measure_intersection_overhead(const MeasureContext& context)
 std::vector<Figure> measure_instances(const MeasureContext& context);
 std::vector<Figure> measure_types(const MeasureContext& context);
 std::vector<Figure> measure_curved(const MeasureContext& context);
+std::vector<Figure> measure_curved_pictures(const MeasureContext& context);
 std::vector<Figure> measure_spd(const MeasureContext& context);
 std::vector<Figure> measure_naive(const MeasureContext& context);
 std::vector<Figure> measure_embree_ratios(const MeasureContext& context);
@@ -57,6 +58,7 @@ inline constexpr Row kRows[] = {
     {"instances", measure_instances},
     {"types", measure_types},
     {"curved", measure_curved},
+    {"curved-pictures", measure_curved_pictures},
     {"povray", measure_povray},
     {"povray-masks", measure_povray_masks},
     {"spd", measure_spd},
