@@ -4,8 +4,10 @@
 #include <limits>
 
 #include "benchmarks/naive.h"
+#include "benchmarks/outline_difference.h"
 #include "benchmarks/row_bounds.h"
 #include "benchmarks/significance.h"
+#include "renderer/scene_description.h"
 #include "renderer/spd_counts.h"
 
 namespace raytree::benchmarks {
@@ -39,6 +41,9 @@ Figure ratios_line(const char* what) {
   figure.kind = BoundKind::within, figure.bound = figure.upper = kAnyInterval, figure.noise = kBetweenProcesses;
   return figure;
 }
+
+/// What the outline of a surface cut to the default tolerance may differ by from that of a finer one.
+double most_outline(double finer) { return outline_bound(TessellationSettings().tolerance * (1 + finer)); }
 
 std::vector<Figure> made_lines() {
   return {
@@ -115,6 +120,16 @@ std::vector<Figure> made_lines() {
            "finding the rates of a view / making its * triangles, a cage with irregular vertices *, 1 thread"),
       line("curved", "Embree's bytes a triangle, as *, * M triangles", "B"),
       line("curved", "time to picture as triangles / as *, * M triangles, * eye and * random rays, 1 thread"),
+      line("curved-pictures", "*: launch to EXR, 1920x1080, 2 threads, default tolerance", "s"),
+      line("curved-pictures", "*: launch to EXR, 1920x1080, 2 threads, * segments an edge", "s"),
+      line("curved-pictures", "*: Embree's bytes a triangle, * M triangles", "B"),
+      at_most(kMostCracks, "curved-pictures", "*: rays that slip through shared edges, of *"),
+      at_most(most_outline(kFinerTolerance), "curved-pictures",
+              "*: outline: largest difference of a pixel's coverage *"),
+      at_most(most_outline(kFinerToleranceOfMany), "curved-pictures",
+              "*: outline: largest difference of a pixel's coverage *"),
+      at_most(TessellationSettings().tolerance, "curved-pictures",
+              "*: largest distance of a facet from the limit surface", "px"),
       at_least(kLeastPovrayTrace, "povray", "POV-Ray's tracing time / ours, no anti-aliasing, spheres-1980, *"),
       at_least(kLeastPovrayRay, "povray", "the same a ray, spheres-1980, *"),
       at_most(kMostPovrayDiffering, "povray",

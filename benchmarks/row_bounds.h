@@ -17,6 +17,10 @@ inline constexpr double kLeastBenchShare = 0.95;                     ///< bare c
 inline constexpr double kMostInstancesGibibytes = 0.3, kMostOverBare = 1.1;
 inline constexpr double kLeastTypesShare = 0.9;                            ///< triangles alone / with spheres
 inline constexpr double kLeastRegularSpeed = 6, kLeastIrregularSpeed = 4;  ///< million limit points a second and core
+inline constexpr double kMostCracks = 0;                                   ///< rays at shared edges that slip through
+/// Tolerance of the surface that outlines are compared with, over the default one: facets about a third as large as
+/// usual, or, of a cage of ten thousand faces, half as large.
+inline constexpr double kFinerTolerance = 1.0 / 8, kFinerToleranceOfMany = 1.0 / 4;
 inline constexpr double kLeastPovrayTrace = 5, kLeastPovrayRay = 2.5, kLeastPovrayAdaptive = 5, kLeastPovrayLaunch = 8;
 inline constexpr double kMostPovrayDiffering = 0;  ///< percent of pixels, of row povray
 /// The same of row povray-masks: at terminators and where shadows are thinner than our samples lie apart, both round
