@@ -1,9 +1,12 @@
 // `raytree bench`: asks rays of a scene, of the standard set or of a file in every way that is worth comparing, side by
 // side. Nothing is shaded.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "app/budget.h"
 #include "app/commands.h"
@@ -12,6 +15,7 @@
 #include "app/prepared_scene.h"
 #include "app/process.h"
 #include "app/render_options.h"
+#include "app/suggestion.h"
 #include "benchmarks/bench_report.h"
 #include "benchmarks/bench_standard.h"
 #include "geometry/stopwatch.h"
@@ -32,7 +36,7 @@ struct BenchOptions {
   SceneFlags scene;
   int threads = 0, repetitions = 9;
   double budget = 0;
-  std::string filter, against = benchmarks::kBenchBaseline, before, rays;
+  std::string filter, against = benchmarks::kBenchBaseline, before, rays, isa;
   std::vector<std::string> meshes;
   bool json = false, quiet = false, list = false;
 
@@ -76,6 +80,10 @@ std::optional<BenchOptions> parse_bench_options(const Words& words) {
   command.add_option("--repetitions", options.repetitions, "Timed passes over the rays; default: 9")->type_name("N");
   add_scene_flags(command, options.scene, false);
   add_hierarchy_flags(command, options.scene);
+  command
+      .add_option("--isa", options.isa,
+                  "Hold Embree to an instruction set: sse2, sse4.2, avx, avx2 or avx512; default: the processor's best")
+      ->type_name("NAME");
   command.add_option("--threads", threads, "Threads; default: all")->type_name("N");
   command.add_flag("--quiet", options.quiet, "No warnings");
   prepare_usage(command);
@@ -84,6 +92,10 @@ std::optional<BenchOptions> parse_bench_options(const Words& words) {
   // Rays are asked again and again: what they cost is what counts, not the build.
   if (options.scene.hierarchy.empty() && options.scene.memory.empty()) options.scene.hierarchy = "balanced";
   options.threads = parse_threads(threads);
+  const std::vector<std::string> isas(std::begin(kEmbreeIsas), std::end(kEmbreeIsas));
+  if (!options.isa.empty() && std::find(isas.begin(), isas.end(), options.isa) == isas.end())
+    throw usage_error(fmt::format("--isa: \"{}\" is none of: {}{}", options.isa, fmt::join(isas, ", "),
+                                  did_you_mean(options.isa, isas)));
   if (!budget.empty()) options.budget = parse_budget(budget);
   benchmarks::NameFilter check(options.filter);
   if (options.repetitions < 1 || options.repetitions > kMostRepetitions)
@@ -99,7 +111,7 @@ class Bench {
  public:
   explicit Bench(const BenchOptions& options) : options_(options), start_(Clock::now()) {
     if (!options.rays.empty()) file_rays_ = benchmarks::read_rays(options.rays);
-    report_.program = version();
+    report_.program = version(), report_.isa = options.isa;
     report_.threads = options.threads, report_.repetitions = options.repetitions, report_.seconds = options.budget;
   }
 
@@ -114,7 +126,7 @@ class Bench {
                                                           ? benchmarks::bench_rays(scene, batches, &interruption.stop())
                                                           : benchmarks::bench_rays(scene, file_rays_);
       if (interruption.stop()) return;
-      if (options_.list) return list(benchmarks::bench_row_names(scene, rays, options_.threads));
+      if (options_.list) return list(benchmarks::bench_row_names(scene, rays, options_.threads, options_.isa));
       if (!name.empty() && seconds > 0 && seconds_since(start) > seconds) {
         report_.scenes_left_out.push_back(fmt::format("{}: {:.2g} s were there for it, and preparing it took {:.2g} s",
                                                       name, seconds, seconds_since(start)));
@@ -122,7 +134,7 @@ class Bench {
       }
       benchmarks::BenchRunOptions run_options;
       run_options.threads = options_.threads, run_options.repetitions = options_.repetitions;
-      run_options.baseline = options_.against;
+      run_options.baseline = options_.against, run_options.isa = options_.isa;
       run_options.filter = benchmarks::NameFilter(options_.filter);
       run_options.stop = &interruption.stop();
       run_options.seam_watertight = options_.scene.edges != "fast";

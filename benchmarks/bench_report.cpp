@@ -153,7 +153,9 @@ Json parsed_report(const std::string& path) {
 }  // namespace
 
 std::string bench_text(const BenchRunReport& report) {
-  std::string text = machine_line() + "\n";
+  std::string text = machine_line();
+  if (!report.isa.empty()) text += ", held to " + report.isa;
+  text += "\n";
   for (const BenchReport& scene : report.scenes) {
     text += fmt::format("\nscene {}, {} x {}: {} triangles, {} other shapes, {} instances; {} thread{}\n", scene.scene,
                         scene.width, scene.height, with_commas(scene.triangles), with_commas(scene.others),
@@ -178,6 +180,7 @@ std::string bench_json(const BenchRunReport& report) {
                      {"compiler", here.compiler},
                      {"build_type", here.build_type},
                      {"tracer", here.tracer}};
+  if (!report.isa.empty()) json["machine"]["tracer_held_to"] = report.isa;
   json["threads"] = report.threads;
   json["repetitions"] = report.repetitions;
   json["seconds"] = report.seconds;
@@ -222,6 +225,8 @@ void compare_with(BenchRunReport& report, const std::string& path) {
     note("compiler", before.at("machine").at("compiler"), here.compiler);
     note("build type", before.at("machine").at("build_type"), here.build_type);
     note("tracer", before.at("machine").at("tracer"), here.tracer);
+    note("the tracer's instruction set", before.at("machine").value("tracer_held_to", "the best"),
+         report.isa.empty() ? "the best" : report.isa);
     note("number of threads", std::to_string(before.at("threads").get<int>()), std::to_string(report.threads));
     for (const BenchReport& scene : report.scenes)
       for (const BenchRow& row : scene.rows) {
