@@ -15,6 +15,7 @@
 #include "app/exit_status.h"
 #include "app/interruption.h"
 #include "app/messages.h"
+#include "app/output_folder.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/render_options.h"
@@ -93,13 +94,14 @@ std::optional<ChartFlags> parse_chart_flags(const Words& words) {
   return flags;
 }
 
-/// Throws Error unless the folder's files can be made.
-void check_folder(const std::string& folder) {
-  if (folder.empty()) throw usage_error("no output: add -o DIR, for example -o chart");
+/// The folder to write to, where its files can be made. Throws Error where they cannot.
+std::string checked_folder(const std::string& name) {
+  if (name.empty()) throw usage_error("no output: add -o DIR, for example -o chart");
+  std::string folder = output_folder(name, {"chart.html", "chart.svg", "points.csv", "chart.json", "reference.exr"});
   std::error_code code;
-  if (fs::exists(folder, code) && !fs::is_directory(folder, code))
-    throw Error(ErrorKind::bad_input, {folder, 0, ""}, "is a file; -o names a folder");
-  check_writable(fs::is_directory(folder, code) ? (fs::path(folder) / "chart.json").string() : folder);
+  if (!fs::is_directory(folder, code)) check_writable(folder);
+  output_folder((fs::path(folder) / "pictures").string(), {});
+  return folder;
 }
 
 /// Reads words as `raytree render` would, without an output.
@@ -159,8 +161,8 @@ class ChartCommand {
     SceneFlags scene;
     scene.scene = flags_.scene;
     check_scene_flags(scene);
-    check_folder(flags_.output);
-    const auto earlier = flags_.fresh ? std::nullopt : benchmarks::read_earlier_chart(flags_.output);
+    folder_ = checked_folder(flags_.output);
+    const auto earlier = flags_.fresh ? std::nullopt : benchmarks::read_earlier_chart(folder_);
     const Words own_words = scene_words(flags_);
     for (const std::string& line : flags_.also) {
       options_.added.push_back(split_words(line));
@@ -178,14 +180,14 @@ class ChartCommand {
     options_.version = version();
     options_.stop = &interruption_.stop();
     options_.on_phase = [this](const std::string& text) { progress_.phase(text); };
-    options_.keep_reference = [this](const Film& film) { benchmarks::write_reference(flags_.output, film); };
-    options_.save = [this](const benchmarks::ChartData& data) { benchmarks::write_chart(flags_.output, data); };
+    options_.keep_reference = [this](const Film& film) { benchmarks::write_reference(folder_, film); };
+    options_.save = [this](const benchmarks::ChartData& data) { benchmarks::write_chart(folder_, data); };
     Warnings warnings;
     const benchmarks::MeasuredChart chart = measure_chart(options_, earlier ? &*earlier : nullptr, warnings);
     progress_.clear();
     if (!flags_.quiet) print_warnings(warnings, false);
     if (chart.data.points.empty()) return;  // interrupted before there was anything
-    benchmarks::write_chart(flags_.output, chart.data);
+    benchmarks::write_chart(folder_, chart.data);
     if (!flags_.quiet) report(chart);
   }
 
@@ -210,13 +212,14 @@ class ChartCommand {
     for (const benchmarks::Finding& finding : findings_of(chart.data)) text += "- " + finding.text + "\n";
     if (!interruption_.stop()) print_result(text);
     const std::string kept = chart.points_kept > 0 ? fmt::format(", {} of them from before", chart.points_kept) : "";
-    print_message(fmt::format("wrote {} ({} settings{})", (fs::path(flags_.output) / "chart.html").string(),
+    print_message(fmt::format("wrote {} ({} settings{})", (fs::path(folder_) / "chart.html").string(),
                               chart.data.points.size(), kept));
   }
 
   const ChartFlags& flags_;
   Progress& progress_;
   const Interruption& interruption_;
+  std::string folder_;  ///< to write to
   benchmarks::ChartOptions options_;
 };
 

@@ -116,13 +116,26 @@ void sort_words(RenderFlags& flags) {
   }
 }
 
+/// Whether two names of files, there or not, are one file's.
+bool same_file(const std::string& a, const std::string& b) {
+  const auto whole = [](const std::string& path) {
+    std::error_code code;
+    const fs::path resolved = fs::weakly_canonical(fs::absolute(path, code), code);
+    return code ? fs::path(path).lexically_normal() : resolved;
+  };
+  return whole(a) == whole(b);
+}
+
 std::vector<OutputFile> parse_outputs(const RenderFlags& flags) {
   if (flags.outputs.empty() && flags.counts.empty())
     throw usage_error("no output: add -o FILE, for example -o picture.png or -o picture.exr (- is standard output)");
   std::vector<OutputFile> outputs;
   for (const std::string& path : flags.outputs) {
-    for (const OutputFile& other : outputs)
+    for (const OutputFile& other : outputs) {
       if (other.path == path) throw usage_error(fmt::format("-o: {} is given twice", path));
+      if (other.path != "-" && path != "-" && same_file(other.path, path))
+        throw usage_error(fmt::format("-o: {} and {} are one file", other.path, path));
+    }
     if (path != "-") {
       outputs.push_back({path, image_format(path)});
       check_writable(path);
@@ -248,6 +261,20 @@ void check_writable(const std::string& path) {
   const AtomicFile probe(path);
 }
 
+namespace {
+
+/// Statistics go to a file of their own. Throws Error (bad_input).
+void check_statistics(const RenderCommandOptions& options) {
+  for (const OutputFile& output : options.outputs)
+    if (output.path != "-" && same_file(output.path, options.statistics))
+      throw usage_error(fmt::format("--stats: {} is the image to write; give another file", options.statistics));
+  if (fs::exists(options.scene.scene) && same_file(options.scene.scene, options.statistics))
+    throw usage_error(fmt::format("--stats: {} is the scene; give another file", options.statistics));
+  check_writable(options.statistics);
+}
+
+}  // namespace
+
 std::optional<RenderCommandOptions> parse_render_options(const Words& words) {
   RenderFlags flags;
   CLI::App command("Render a scene to image files.", "raytree render");
@@ -313,7 +340,7 @@ std::optional<RenderCommandOptions> parse_render_options(const Words& words) {
     const bool image_on_stdout = std::any_of(options.outputs.begin(), options.outputs.end(),
                                              [](const OutputFile& output) { return output.path == "-"; });
     if (options.statistics != "-")
-      check_writable(options.statistics);
+      check_statistics(options);
     else if (image_on_stdout)
       throw usage_error("--stats - and -o -: standard output takes one of the two");
   }

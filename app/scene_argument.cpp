@@ -248,6 +248,19 @@ void check_scene_flags(const SceneFlags& flags) {
   if (!flags.rough_samples.empty()) parse_integer("--rough-samples", flags.rough_samples, 1, kMaxRoughSamples);
 }
 
+namespace {
+
+/// Flags of adaptive anti-aliasing, where another method samples the picture.
+void warn_of_idle_sampling_flags(const SceneFlags& flags, const SceneDescription& scene, Warnings& warnings) {
+  if (scene.render.antialias.method == Antialiasing::Method::whitted) return;
+  for (const auto& [flag, value] : {std::pair{"--threshold", &flags.threshold},
+                                    {"--levels", &flags.levels},
+                                    {"--minimum-level", &flags.minimum_level}})
+    if (!value->empty()) warnings.push_back({{}, fmt::format("{} has no effect: it is for --antialias whitted", flag)});
+}
+
+}  // namespace
+
 SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
   SceneDescription scene = read_scene_argument(flags, warnings);
   for (const std::string& text : flags.sets) {
@@ -276,6 +289,7 @@ SceneDescription load_scene(const SceneFlags& flags, Warnings& warnings) {
         fmt::format("--minimum-level: {} is more than the {} levels that a pixel is divided at most; "
                     "give --levels too",
                     adaptive.minimum_level, adaptive.levels));
+  warn_of_idle_sampling_flags(flags, scene, warnings);
   if (!flags.camera.empty()) {
     std::vector<std::string> names;
     for (const CameraDescription& camera : scene.cameras) names.push_back(camera.name);

@@ -10,6 +10,7 @@
 #include "app/exit_status.h"
 #include "app/interruption.h"
 #include "app/messages.h"
+#include "app/output_folder.h"
 #include "app/progress.h"
 #include "app/render_options.h"
 #include "app/suggestion.h"
@@ -27,6 +28,7 @@ using benchmarks::StabilityMap;
 using benchmarks::StabilityReport;
 
 constexpr const char* kAllCases = "*";
+constexpr const char *kPage = "stability.html", *kJson = "stability.json";
 
 struct StabilityCommandOptions {
   std::string folder, filter = kAllCases;
@@ -81,6 +83,7 @@ std::optional<StabilityCommandOptions> parse_stability_options(const Words& word
   options.threads = parse_threads(threads);
   if (options.folder.empty() && !options.list)
     throw usage_error("no output: add -o DIR, a folder for the page, for example -o stability");
+  if (!options.folder.empty() && !options.list) options.folder = output_folder(options.folder, {kPage, kJson});
   return options;
 }
 
@@ -156,8 +159,8 @@ void write_stability(const std::string& folder, const MeasuredSuite& suite, cons
   }
   const std::string page = benchmarks::stability_page(suite.report, sections);
   const std::filesystem::path path(folder);
-  write_file_atomically((path / "stability.html").string(), page.data(), page.size());
-  write_file_atomically((path / "stability.json").string(), json.data(), json.size());
+  write_file_atomically((path / kPage).string(), page.data(), page.size());
+  write_file_atomically((path / kJson).string(), json.data(), json.size());
 }
 
 }  // namespace

@@ -32,6 +32,24 @@ std::optional<Error> given_twice(const CLI::App& command) {
   return std::nullopt;
 }
 
+/// The error of a flag that nothing follows, or another flag, in the name that was typed.
+std::optional<Error> lacks_value(const CLI::App& command, const Words& words) {
+  const auto flag_of = [&](const std::string& word) {
+    return word.size() > 1 && word[0] == '-' ? command.get_option_no_throw(word) : nullptr;
+  };
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const CLI::Option* const option = flag_of(words[i]);
+    if (option == nullptr || option->get_items_expected_min() == 0) continue;
+    if (option->get_type_name() == "FLAGS" && i + 1 != words.size()) {  // whose value is flags itself
+      ++i;
+      continue;
+    }
+    if (i + 1 == words.size() || flag_of(words[i + 1]) != nullptr)
+      return usage_error(fmt::format("{}: no value follows; it takes {}", words[i], option->get_type_name()));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Error usage_error(const std::string& message) { return Error(ErrorKind::bad_input, {}, message); }
@@ -45,6 +63,13 @@ void prepare_usage(CLI::App& command) {
 }
 
 bool parse_usage(CLI::App& command, const Words& words) {
+  // CLI11 would take the next flag for the value.
+  if (const std::optional<Error> lacking = lacks_value(command, words)) throw *lacking;
+  // And the next word for that of "--camera=".
+  for (const std::string& word : words)
+    if (const auto equals = word.find('='); word.rfind("--", 0) == 0 && equals + 1 == word.size())
+      if (command.get_option_no_throw(word.substr(0, equals)) != nullptr)
+        throw usage_error(word.substr(0, equals) + ": the value is empty");
   std::vector<std::string> reversed(words.rbegin(), words.rend());  // as CLI11 wants them
   try {
     command.parse(reversed);

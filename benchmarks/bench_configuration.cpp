@@ -56,7 +56,7 @@ std::vector<BenchConfiguration> bench_configurations(const BenchSubject& subject
     list.push_back(bare(common, best));
     list.back().threads = 1;
   }
-  list.emplace_back().tracer = BenchTracer::seam;
+  if (subject.seam) list.emplace_back().tracer = BenchTracer::seam;
 
   const auto with_scene = [&](const auto& change) {
     BenchSceneOptions build;

@@ -38,6 +38,7 @@ struct BenchSubject {
   int widest_call = 8;    ///< native packets
   int threads = 1;        ///< of the run
   double primitives = 0;  ///< that a hierarchy holds
+  bool seam = true;       ///< the renderer's tracer is one of them
   bool coherent = true;   ///< the class's rays run alike: packets are followed together
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -77,10 +78,19 @@ Json scene_json(const BenchReport& report) {
 
 std::string range_text(const Spread& spread) { return fmt::format("{:.3g}-{:.3g}", spread.low, spread.high); }
 
+/// Columns that the longest name of a scene or configuration takes.
+std::size_t name_width(const BenchReport& report) {
+  std::size_t width = 0;
+  for (const BenchBuild& build : report.builds) width = std::max(width, build.scene.size());
+  for (const BenchRow& row : report.rows) width = std::max(width, row.configuration.size());
+  return width;
+}
+
 std::string builds_text(const BenchReport& report) {
-  std::string text = fmt::format("{:<50} {:>9} {:>9} {:>9}\n", "built", "seconds", "B each", "B at peak");
+  const std::size_t width = name_width(report);
+  std::string text = fmt::format("{:<{}} {:>9} {:>9} {:>9}\n", "built", width + 2, "seconds", "B each", "B at peak");
   for (const BenchBuild& build : report.builds) {
-    text += fmt::format("  {:<48} {:>9.4f} {:>9.1f} {:>9.1f}", build.scene, build.seconds.median,
+    text += fmt::format("  {:<{}} {:>9.4f} {:>9.1f} {:>9.1f}", build.scene, width, build.seconds.median,
                         bytes_each(report, build.bytes), bytes_each(report, build.peak_bytes));
     if (build.triangles_per_primitive > 1)
       text += fmt::format("  {:.2f} triangles in one", build.triangles_per_primitive);
@@ -98,19 +108,20 @@ std::string verdict_text(const BenchRow& row) {
 }
 
 std::string rows_text(const BenchReport& report) {
+  const std::size_t width = name_width(report);
   std::string text, kind;
   for (const BenchRow& row : report.rows) {
     if (row.rays_name != kind) {
       kind = row.rays_name;
-      text += fmt::format("{:<50} {:>8} {:>13} {:>7} {:>13} {:>6} {:>9} {:>9} {:>7}  {}\n", kind, "Mrays/s",
+      text += fmt::format("{:<{}} {:>8} {:>13} {:>7} {:>13} {:>6} {:>9} {:>9} {:>7}  {}\n", kind, width + 2, "Mrays/s",
                           "quartiles", "ratio", "quartiles", "beside", "rays", "hits", "differ", "checksum");
     }
     const std::string beside = row.beside.empty() ? "" : fmt::format("{:.2f}", row.beside_ratio.median);
-    text +=
-        fmt::format("  {:<48} {:>8.3g} {:>13} {:>7.3g} {:>13} {:>6} {:>9} {:>9} {:>7}  {:016x}{}{}\n",
-                    row.configuration, row.speed.median, range_text(row.speed), row.ratio.median, range_text(row.ratio),
-                    beside, with_commas(row.rays), with_commas(row.hits), with_commas(row.differ), row.checksum,
-                    verdict_text(row), row.repeatable ? "" : "  NOT THE SAME EACH TIME");
+    text += fmt::format("  {:<{}} {:>8.3g} {:>13} {:>7.3g} {:>13} {:>6} {:>9} {:>9} {:>7}  {:016x}{}{}\n",
+                        row.configuration, width, row.speed.median, range_text(row.speed), row.ratio.median,
+                        range_text(row.ratio), beside, with_commas(row.rays), with_commas(row.hits),
+                        with_commas(row.differ), row.checksum, verdict_text(row),
+                        row.repeatable ? "" : "  NOT THE SAME EACH TIME");
   }
   return text;
 }
@@ -118,11 +129,13 @@ std::string rows_text(const BenchReport& report) {
 std::string changes_text(const BenchRunReport& report) {
   std::string text;
   for (const std::string& warning : report.before_warnings) text += "note: " + warning + "\n";
-  text += fmt::format("{:<58} {:>9} {:>9} {:>7} {:>8}  {}\n", "against " + report.before, "Mrays/s", "now", "ratio",
-                      "chance", "verdict");
+  std::size_t width = 0;
+  for (const BenchChange& change : report.changes) width = std::max(width, change.row.size());
+  text += fmt::format("{:<{}} {:>9} {:>9} {:>7} {:>8}  {}\n", "against " + report.before, width + 2, "Mrays/s", "now",
+                      "ratio", "chance", "verdict");
   for (const BenchChange& change : report.changes)
-    text += fmt::format("  {:<56} {:>9.3g} {:>9.3g} {:>7.3f} {:>8.2g}  {}{}\n", change.row, change.before, change.after,
-                        change.speed.ratio, change.speed.chance, name_of(change.speed.change),
+    text += fmt::format("  {:<{}} {:>9.3g} {:>9.3g} {:>7.3f} {:>8.2g}  {}{}\n", change.row, width, change.before,
+                        change.after, change.speed.ratio, change.speed.chance, name_of(change.speed.change),
                         change.same_answers ? "" : ", OTHER ANSWERS");
   return text;
 }
@@ -140,7 +153,9 @@ Json parsed_report(const std::string& path) {
 }  // namespace
 
 std::string bench_text(const BenchRunReport& report) {
-  std::string text = machine_line() + "\n";
+  std::string text = machine_line();
+  if (!report.isa.empty()) text += ", held to " + report.isa;
+  text += "\n";
   for (const BenchReport& scene : report.scenes) {
     text += fmt::format("\nscene {}, {} x {}: {} triangles, {} other shapes, {} instances; {} thread{}\n", scene.scene,
                         scene.width, scene.height, with_commas(scene.triangles), with_commas(scene.others),
@@ -165,6 +180,7 @@ std::string bench_json(const BenchRunReport& report) {
                      {"compiler", here.compiler},
                      {"build_type", here.build_type},
                      {"tracer", here.tracer}};
+  if (!report.isa.empty()) json["machine"]["tracer_held_to"] = report.isa;
   json["threads"] = report.threads;
   json["repetitions"] = report.repetitions;
   json["seconds"] = report.seconds;
@@ -209,6 +225,8 @@ void compare_with(BenchRunReport& report, const std::string& path) {
     note("compiler", before.at("machine").at("compiler"), here.compiler);
     note("build type", before.at("machine").at("build_type"), here.build_type);
     note("tracer", before.at("machine").at("tracer"), here.tracer);
+    note("the tracer's instruction set", before.at("machine").value("tracer_held_to", "the best"),
+         report.isa.empty() ? "the best" : report.isa);
     note("number of threads", std::to_string(before.at("threads").get<int>()), std::to_string(report.threads));
     for (const BenchReport& scene : report.scenes)
       for (const BenchRow& row : scene.rows) {

@@ -21,6 +21,7 @@ struct BenchRunReport {
   std::string program;  ///< version
   int threads = 1, repetitions = 0;
   double seconds = 0;  ///< that were set; 0: none
+  std::string isa;     ///< instruction set that Embree was held to; empty: none
   std::vector<BenchReport> scenes;
   std::vector<std::string> scenes_left_out;  ///< "name: why"
   std::string before;                        ///< file of the earlier run; empty: none

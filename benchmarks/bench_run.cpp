@@ -50,7 +50,8 @@ class BenchRun {
     subject_.meshes = report_.triangles > 0;
     subject_.threads = options.threads;
     subject_.primitives = static_cast<double>(report_.primitives());
-    subject_.widest_call = EmbreeBenchScene::widest_call();
+    subject_.widest_call = EmbreeBenchScene::widest_call(options.isa);
+    subject_.seam = options.isa.empty();
   }
 
   std::vector<std::string> names() {
@@ -133,7 +134,8 @@ class BenchRun {
     if (baseline_.tracer != BenchTracer::bare) own_baseline_ = built(baseline_);
   }
 
-  BuiltTracer built(const BenchConfiguration& configuration) {
+  BuiltTracer built(BenchConfiguration configuration) {
+    configuration.build.isa = options_.isa;
     BuiltTracer tracer = build_tracer(scene_, configuration, options_.threads, options_.stop);
     report_.builds.push_back(tracer.build);
     return tracer;
@@ -331,9 +333,10 @@ bool BenchReport::suspicious() const {
   return std::any_of(rows.begin(), rows.end(), [](const BenchRow& row) { return row.suspicious(); });
 }
 
-std::vector<std::string> bench_row_names(const Scene& scene, const std::vector<BenchRays>& rays, int threads) {
+std::vector<std::string> bench_row_names(const Scene& scene, const std::vector<BenchRays>& rays, int threads,
+                                         const std::string& isa) {
   BenchRunOptions options;
-  options.threads = threads;
+  options.threads = threads, options.isa = isa;
   return BenchRun(scene, rays, options).names();
 }
 

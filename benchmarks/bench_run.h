@@ -48,6 +48,9 @@ struct BenchRunOptions {
   /// Configurations of every kind of rays, the baseline among them; none: bench_configurations().
   std::vector<BenchConfiguration> configurations;
   NameFilter filter = NameFilter("");
+  /// Instruction set that Embree is held to, see BenchSceneOptions::isa; the renderer's tracer, which takes the best,
+  /// is then not measured.
+  std::string isa;
   bool seam_watertight = true;  ///< PrepareOptions::watertight of the scene: what the seam's answers are held to
   const std::atomic<bool>* stop = nullptr;
 };
@@ -101,7 +104,8 @@ struct BenchReport {
 };
 
 /// Names of all rows that there are for such a scene, in the order of measuring.
-std::vector<std::string> bench_row_names(const Scene& scene, const std::vector<BenchRays>& rays, int threads);
+std::vector<std::string> bench_row_names(const Scene& scene, const std::vector<BenchRays>& rays, int threads,
+                                         const std::string& isa = {});
 
 /// Rows that the filter takes. Each repetition asks the baseline, then each configuration of one scene; the baseline is
 /// asked again beside every scene, so that no more than three are held at once. One more repetition comes first and

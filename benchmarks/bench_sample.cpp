@@ -11,6 +11,15 @@ namespace {
 /// Rays of each batch where all of them together are fewer than one batch: a packet.
 constexpr std::size_t kFewOfBatch = 8;
 
+/// Where `most` rays of a batch begin: at a packet, not at the same one of each batch.
+std::size_t first_of_part(std::size_t k, std::size_t size, std::size_t most) {
+  if (size <= most) return 0;
+  const std::size_t places = (size - most) / kFewOfBatch + 1;
+  // Multiples of the square root of 2, so that it hangs not together with which batch it is.
+  const std::uint64_t part = (std::uint64_t(k) * 0x6a09e667f3bcc908u) >> 32;  // of 2^32
+  return kFewOfBatch * static_cast<std::size_t>((part * places) >> 32);
+}
+
 }  // namespace
 
 BenchRays part_of(const BenchRays& kind, std::size_t batches, std::size_t most_of_batch) {
@@ -20,9 +29,10 @@ BenchRays part_of(const BenchRays& kind, std::size_t batches, std::size_t most_o
     to.coherence = from.coherence, to.occlusion = from.occlusion;
     const std::size_t count = from.batches.size(), taken = std::min(count, batches);
     for (std::size_t k = 0; k < taken; ++k) {
-      const RayBatch& batch = from.batches[k * count / taken];
+      const RayBatch& batch = from.batches[spread_place(k, taken, count)];
       RayBatch& copy = to.batches.emplace_back(kBenchmarkBatch);
-      for (std::size_t i = 0; i < std::min(batch.size, most_of_batch); ++i)
+      const std::size_t first = first_of_part(k, batch.size, most_of_batch);
+      for (std::size_t i = first; i < std::min(batch.size, first + most_of_batch); ++i)
         copy.push(batch.origin(i), batch.direction(i), batch.max_distance[i]);
     }
   };
@@ -30,7 +40,14 @@ BenchRays part_of(const BenchRays& kind, std::size_t batches, std::size_t most_o
   if (!kind.plane_distance.empty()) {
     take(kind.without_planes, part.without_planes);
     const std::size_t count = kind.plane_distance.size(), taken = std::min(count, batches);
-    for (std::size_t k = 0; k < taken; ++k) part.plane_distance.push_back(kind.plane_distance[k * count / taken]);
+    for (std::size_t k = 0; k < taken; ++k) {
+      const std::size_t from = spread_place(k, taken, count);
+      const std::vector<float>& planes = kind.plane_distance[from];
+      const std::size_t first = first_of_part(k, planes.size(), most_of_batch);
+      part.plane_distance.emplace_back(
+          planes.begin() + static_cast<std::ptrdiff_t>(first),
+          planes.begin() + static_cast<std::ptrdiff_t>(std::min(planes.size(), first + most_of_batch)));
+    }
   }
   return part;
 }

@@ -8,7 +8,8 @@
 
 namespace raytree::benchmarks {
 
-/// Up to `batches` batches spread evenly over a kind's rays, of each up to `most_of_batch` rays.
+/// Up to `batches` batches spread over a kind's rays, of each up to `most_of_batch` rays in a row, from a packet on
+/// that is another one in each batch.
 BenchRays part_of(const BenchRays& kind, std::size_t batches, std::size_t most_of_batch);
 
 struct RayBudget {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "benchmarks/bumpy_torus.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 #include "geometry/embree_kinds.h"
 #include "geometry/patch_surface.h"
@@ -23,7 +24,6 @@ namespace {
 
 using Surface = std::unique_ptr<ParametricSurface>;
 
-constexpr double kLeastRegular = 6, kLeastIrregular = 4;  // million points a second and core
 constexpr int kRepetitionsOfSurfaces = 5;
 constexpr int kRepetitionsOfKinds = 3;  // each builds a million triangles twice
 constexpr double kMillion = 1e6;
@@ -184,11 +184,11 @@ std::vector<Figure> measure_all(const MeasureContext& context) {
   constexpr const char* kRegularBefore = "; OpenSubdiv alone: 6-8 M/s by Bfr";
   constexpr const char* kIrregularBefore = "; OpenSubdiv alone: 4.4 M/s by Bfr";
   const Kind kinds[] = {
-      {"a regular cage", [] { return cage_surface(bumpy_torus_cage(100, 100, false, false)); }, 10, kLeastRegular,
+      {"a regular cage", [] { return cage_surface(bumpy_torus_cage(100, 100, false, false)); }, 10, kLeastRegularSpeed,
        kRegularBefore},
       {"a regular cage with texture", [] { return cage_surface(bumpy_torus_cage(100, 100, false, true)); }, 10, 0, ""},
       {"a cage with irregular vertices at each face", [] { return cage_surface(irregular_torus_cage(false)); }, 10,
-       kLeastIrregular, kIrregularBefore},
+       kLeastIrregularSpeed, kIrregularBefore},
       {"the same with texture", [] { return cage_surface(irregular_torus_cage(true)); }, 10, 0, ""},
       {"Bezier patches", [] { return patch_surface([](const auto& point) { return bezier_through(point); }); }, 20, 0,
        ""},

@@ -4,12 +4,11 @@
 #include "benchmarks/bare_trace.h"
 #include "benchmarks/recording_intersector.h"
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 
 namespace raytree::benchmarks {
 namespace {
-
-constexpr double kFloor = 0.55, kChase = 0.65;
 
 Figure floor_figure(const Scene& scene, const RayRecord& record, const BareReplay& replay, int threads) {
   const ReplayCalls calls = best_calls(replay, threads);
@@ -28,8 +27,8 @@ Figure floor_figure(const Scene& scene, const RayRecord& record, const BareRepla
   figure.what = "bare Embree calls / tracing phase, " + picture_text(scene, threads);
   figure.measured = pairs.ratio;
   figure.kind = BoundKind::at_least;
-  figure.bound = kFloor;
-  figure.chase = kChase;
+  figure.bound = kLeastFloor;
+  figure.chase = kChasedFloor;
   figure.problem = hit_mismatch(tally, record);
   figure.note = fmt::format("{:.4f} s bare, {:.4f} s tracing, packets of {}; {}", pairs.a.median, pairs.b.median,
                             replay.packet_width(), calls_text(calls, record));

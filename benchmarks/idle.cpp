@@ -7,13 +7,12 @@
 
 #include "benchmarks/callgrind_profile.h"
 #include "benchmarks/child_process.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 #include "geometry/error.h"
 
 namespace raytree::benchmarks {
 namespace {
-
-constexpr double kBoundPercent = 2;
 
 /// Instructions inside render(), the program's own and the libraries'.
 struct RenderInstructions {
@@ -47,7 +46,7 @@ Figure idle_figure(const char* what, std::uint64_t with, std::uint64_t without) 
   const double percent = 100 * (static_cast<double>(with) / static_cast<double>(without) - 1);
   figure.measured = {percent, percent, percent, without > 0 ? 1 : 0};
   figure.kind = BoundKind::at_most;
-  figure.bound = kBoundPercent;
+  figure.bound = kMostIdlePercent;
   figure.note = fmt::format("{:.3f} M instructions with, {:.3f} M without", static_cast<double>(with) * 1e-6,
                             static_cast<double>(without) * 1e-6);
   return figure;

@@ -12,6 +12,7 @@
 #include "benchmarks/recording_intersector.h"
 #include "benchmarks/reference_scenes.h"
 #include "benchmarks/resident_memory.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 #include "benchmarks/seam_comparison.h"
 #include "geometry/error.h"
@@ -19,7 +20,6 @@
 namespace raytree::benchmarks {
 namespace {
 
-constexpr double kMostGibibytes = 0.3, kMostOverBare = 1.1;
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
 /// Throws Error where the system does not tell.
@@ -95,7 +95,7 @@ std::vector<Figure> measure_instances(const MeasureContext& context) {
   size.unit = "GiB";
   size.measured = {gibibytes, gibibytes, gibibytes, 1};
   size.kind = BoundKind::at_most;
-  size.bound = kMostGibibytes;
+  size.bound = kMostInstancesGibibytes;
   size.note = fmt::format("{:.3f} GiB once prepared; arrays {:.3f} GiB, Embree's own {:.3f} GiB; {:.2e} triangles seen",
                           (of("resident") - of("before")) / kGibibyte, of("arrays") / kGibibyte,
                           of("embree") / kGibibyte, of("instanced_triangles"));

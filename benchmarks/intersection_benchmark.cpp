@@ -80,12 +80,18 @@ const RayBatch& warmed(const RayBatch& batch) {
   return copy;
 }
 
+std::size_t spread_place(std::size_t k, std::size_t taken, std::size_t count) {
+  // Multiples of the golden ratio keep away from each other, whatever the length of a row.
+  const std::size_t begin = k * count / taken, end = (k + 1) * count / taken;
+  const std::uint64_t part = (std::uint64_t(k) * 0x9e3779b97f4a7c15u) >> 32;  // of 2^32
+  return begin + static_cast<std::size_t>((part * (end - begin)) >> 32);
+}
+
 RaySet thinned(RaySet rays, std::size_t most) {
-  const std::size_t count = rays.batches.size();
-  if (count <= most) return rays;
+  const std::size_t count = rays.batches.size(), taken = std::max<std::size_t>(most, 1);
+  if (count <= taken) return rays;
   std::vector<RayBatch> kept;
-  for (std::size_t i = 0; i < std::max<std::size_t>(most, 1); ++i)
-    kept.push_back(std::move(rays.batches[i * count / std::max<std::size_t>(most, 1)]));
+  for (std::size_t k = 0; k < taken; ++k) kept.push_back(std::move(rays.batches[spread_place(k, taken, count)]));
   rays.batches = std::move(kept);
   return rays;
 }
@@ -110,13 +116,13 @@ std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const
 
   RaySet& primary = set(BenchmarkRays::primary);
   const auto [width, height] = scene.description.image;
-  // A batch is a run of blocks along rows of blocks; the picture's batches are left out evenly.
+  // A batch is a run of blocks along rows of blocks.
   const std::size_t blocks_across = static_cast<std::size_t>((width + kBlockWidth - 1) / kBlockWidth),
                     blocks = blocks_across * static_cast<std::size_t>((height + kBlockHeight - 1) / kBlockHeight);
   constexpr std::size_t kBlocksOfBatch = kBenchmarkBatch / (kBlockWidth * kBlockHeight);
   const std::size_t runs = (blocks + kBlocksOfBatch - 1) / kBlocksOfBatch, taken = std::min(runs, most_batches);
   for (std::size_t take = 0; take < taken && !stopped(stop); ++take) {
-    const std::size_t first = take * runs / taken * kBlocksOfBatch;
+    const std::size_t first = spread_place(take, taken, runs) * kBlocksOfBatch;
     for (std::size_t block = first; block < std::min(first + kBlocksOfBatch, blocks); ++block) {
       const int left = static_cast<int>(block % blocks_across) * kBlockWidth,
                 top = static_cast<int>(block / blocks_across) * kBlockHeight;

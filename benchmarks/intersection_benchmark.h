@@ -42,11 +42,15 @@ inline constexpr std::size_t kBenchmarkBatch = 1024;
 /// Adds a ray to a set's last batch, or to a new one.
 void add_ray(RaySet& set, const Vec3f& origin, const Vec3f& direction, float end);
 
-/// Batches spread evenly over the set, no more than `most` (at least one).
+/// Place `k` of `taken` in a row of `count`, 0 < taken <= count: one in each of as many equal parts, not at the same
+/// place of each, since what stands in rows (blocks of pixels) would be met in the same few columns.
+std::size_t spread_place(std::size_t k, std::size_t taken, std::size_t count);
+
+/// Batches spread over the set by spread_place(), no more than `most` (at least one).
 RaySet thinned(RaySet rays, std::size_t most);
 
 /// The rays of a prepared scene, one set a kind; a set may be empty. Eye rays are those of the whole picture, or no
-/// more than `most_batches` batches spread evenly over it. `stop`: ends early, with sets that are not whole.
+/// more than `most_batches` batches spread over it by spread_place(). `stop`: ends early, with sets that are not whole.
 std::array<RaySet, kBenchmarkRaysCount> benchmark_rays(const Scene& scene, const std::atomic<bool>* stop = nullptr,
                                                        std::size_t most_batches = std::size_t(-1));
 

@@ -2,16 +2,11 @@
 #include <fmt/format.h>
 
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 #include "benchmarks/seam_comparison.h"
 
 namespace raytree::benchmarks {
-namespace {
-
-constexpr double kShareOfEmbree = 0.95;
-
-}  // namespace
-
 std::vector<Figure> measure_intersection_overhead(const MeasureContext& context) {
   const Scene scene = prepared(reference_mesh_alone());
   const std::array<RaySet, kBenchmarkRaysCount> sets = benchmark_rays(scene);
@@ -30,7 +25,7 @@ std::vector<Figure> measure_intersection_overhead(const MeasureContext& context)
                               scene.description.name);
     figure.measured = pairs.ratio;
     figure.kind = BoundKind::at_least;
-    figure.bound = kShareOfEmbree;
+    figure.bound = kLeastBenchShare;
     figure.problem = comparison.problem();
     figure.note = fmt::format("{:.4f} s bare, {:.4f} s by the benchmark", pairs.a.median, pairs.b.median);
     figures.push_back(figure);

@@ -10,6 +10,7 @@
 #include "benchmarks/child_process.h"
 #include "benchmarks/recording_intersector.h"
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 #include "geometry/error.h"
 #include "geometry/stopwatch.h"
@@ -19,7 +20,6 @@
 namespace raytree::benchmarks {
 namespace {
 
-constexpr double kTimeRatio = 1.25, kMemoryRatio = 1.15;
 constexpr double kMebibyte = 1024.0 * 1024.0;
 constexpr double kRoomForTheRest = 160 * kMebibyte;  ///< libraries and what is not the scene
 constexpr int kThreads = 2;
@@ -133,10 +133,10 @@ std::vector<Figure> measure_large(const MeasureContext& context) {
   std::vector<double> peaks, other_peaks;
   nlohmann::json bare, other;
   const Figure time = bounded(
-      time_figure({}, "balanced", "the renderer's kind, grids / Embree's of triangles", peaks, bare), kTimeRatio);
+      time_figure({}, "balanced", "the renderer's kind, grids / Embree's of triangles", peaks, bare), kMostLargeTime);
   // What the renderer adds to the same build, whatever it builds.
   const Figure of_quads =
-      bounded(time_figure({"--hierarchy", "quads"}, "quads", "both as quads", other_peaks, other), kTimeRatio);
+      bounded(time_figure({"--hierarchy", "quads"}, "quads", "both as quads", other_peaks, other), kMostLargeTime);
   nlohmann::json grids;
   const Figure of_grids = time_figure({"--hierarchy", "grids"}, "grids", "both as grids", other_peaks, grids);
 
@@ -149,7 +149,7 @@ std::vector<Figure> measure_large(const MeasureContext& context) {
   for (double& peak : peaks) peak = (peak - film - kRoomForTheRest) / (arrays + embree);
   memory.measured = spread_of(peaks);
   memory.kind = BoundKind::at_most;
-  memory.bound = kMemoryRatio;
+  memory.bound = kMostLargeMemory;
   memory.note = fmt::format("{:.0f} MiB peak; {:.0f} MiB arrays, {:.0f} MiB Embree, {:.0f} MiB film",
                             (memory.measured.median * (arrays + embree) + film + kRoomForTheRest) / kMebibyte,
                             arrays / kMebibyte, embree / kMebibyte, film / kMebibyte);

@@ -21,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/scratch_folder.h"
 #include "geometry/mesh_file.h"
 #include "geometry/stopwatch.h"
@@ -144,11 +145,10 @@ void print_json(bool first, const std::string& what, const char* unit, const std
 }
 
 int run(int repetitions, bool json) {
-  constexpr double kMostMemory = 2.5;
-  const Row rows[] = {{"PLY binary, little-endian", "little.ply", Kind::ply_little, 300},
-                      {"PLY binary, big-endian", "big.ply", Kind::ply_big, 300},
+  const Row rows[] = {{"PLY binary, little-endian", "little.ply", Kind::ply_little, benchmarks::kLeastPlySpeed},
+                      {"PLY binary, big-endian", "big.ply", Kind::ply_big, benchmarks::kLeastPlySpeed},
                       {"PLY ascii", "ascii.ply", Kind::ply_ascii, 0},
-                      {"OBJ", "waves.obj", Kind::obj, 100}};
+                      {"OBJ", "waves.obj", Kind::obj, benchmarks::kLeastObjSpeed}};
   const PolygonMesh mesh = waves();
   const benchmarks::ScratchFolder folder;
   if (!json) {
@@ -185,14 +185,14 @@ int run(int repetitions, bool json) {
     if (json) {
       const std::string name = std::string("reading ") + row.name + ", 1M triangles";
       print_json(&row == rows, name, "MB/s", speeds, "at_least", row.least_speed);
-      print_json(false, name + ": peak memory / arrays kept", "", {ratio}, "at_most", kMostMemory);
+      print_json(false, name + ": peak memory / arrays kept", "", {ratio}, "at_most", benchmarks::kMostLoadingMemory);
       continue;
     }
     const double speed = megabytes / best;
-    const bool good = speed >= row.least_speed && ratio <= kMostMemory;
+    const bool good = speed >= row.least_speed && ratio <= benchmarks::kMostLoadingMemory;
     short_of = short_of || !good;
     std::printf("%-28s %8.1f %9.1f %9.0f %9.2f  >= %.0f MB/s, <= %.1f: %s\n", row.name, megabytes, best * 1e3, speed,
-                ratio, row.least_speed, kMostMemory, good ? "ok" : "SHORT");
+                ratio, row.least_speed, benchmarks::kMostLoadingMemory, good ? "ok" : "SHORT");
   }
   if (json) {
     std::printf("]\n");

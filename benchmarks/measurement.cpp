@@ -33,16 +33,6 @@ std::string with_unit(const std::string& text, const std::string& unit) {
   return unit.empty() ? text : text + " " + unit;
 }
 
-std::string bound_text(const Figure& figure) {
-  if (figure.kind == BoundKind::none) return "";
-  if (figure.kind == BoundKind::within)
-    return fmt::format("{} to {}", number(figure.bound), with_unit(number(figure.upper), figure.unit));
-  std::string text =
-      (figure.kind == BoundKind::at_least ? ">= " : "<= ") + with_unit(number(figure.bound), figure.unit);
-  if (std::isfinite(figure.chase)) text += fmt::format(" (chase {})", number(figure.chase));
-  return text;
-}
-
 std::string verdict(const Figure& figure) {
   if (!figure.problem.empty()) return "**falls short**: " + figure.problem;
   if (figure.kind == BoundKind::none) return "";
@@ -88,6 +78,16 @@ bool Figure::holds() const {
   if (kind == BoundKind::at_most) return measured.median <= bound;
   if (kind == BoundKind::within) return measured.high * (1 + noise) >= bound && measured.low / (1 + noise) <= upper;
   return true;
+}
+
+std::string bound_text(const Figure& figure) {
+  if (figure.kind == BoundKind::none) return "";
+  if (figure.kind == BoundKind::within)
+    return fmt::format("{} to {}", number(figure.bound), with_unit(number(figure.upper), figure.unit));
+  std::string text =
+      (figure.kind == BoundKind::at_least ? ">= " : "<= ") + with_unit(number(figure.bound), figure.unit);
+  if (std::isfinite(figure.chase)) text += fmt::format(" (chase {})", number(figure.chase));
+  return text;
 }
 
 std::string table_head() {

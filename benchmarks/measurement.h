@@ -60,6 +60,8 @@ struct Figure {
   bool holds() const;
 };
 
+/// ">= 0.55 (chase 0.65)", "1.95 to 2.25", with the unit; empty without a bound.
+std::string bound_text(const Figure& figure);
 std::string table_head();
 std::string table_line(const Figure& figure);
 /// The figures and the header's lines as JSON, ending in a newline.

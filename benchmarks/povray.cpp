@@ -12,6 +12,7 @@
 #include "benchmarks/child_process.h"
 #include "benchmarks/povray_run.h"
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 #include "geometry/error.h"
 #include "geometry/triangle_reference.h"
@@ -20,8 +21,6 @@
 
 namespace raytree::benchmarks {
 namespace {
-
-constexpr double kTraceRatio = 5, kRayRatio = 2.5, kAdaptiveRatio = 5, kLaunchRatio = 8;
 
 struct Traced {
   double seconds = 0, rays = 0;
@@ -101,10 +100,11 @@ void measure_tracing(const MeasureContext& context, Scene& scene, const std::str
       fmt::format("{:.3f} s of CPU time against {:.3f} s; {:.0f} against {:.0f} rays, shadow rays not counted",
                   pairs.a.median, pairs.b.median, their_rays, our_rays);
   figures.push_back(figure_of("POV-Ray's tracing time / ours, no anti-aliasing, " + picture_text(scene, 1), pairs.ratio,
-                              BoundKind::at_least, kTraceRatio, note));
+                              BoundKind::at_least, kLeastPovrayTrace, note));
   Spread a_ray = pairs.ratio;
   a_ray.low *= share, a_ray.median *= share, a_ray.high *= share;
-  figures.push_back(figure_of("the same a ray, " + picture_text(scene, 1), a_ray, BoundKind::at_least, kRayRatio, ""));
+  figures.push_back(
+      figure_of("the same a ray, " + picture_text(scene, 1), a_ray, BoundKind::at_least, kLeastPovrayRay, ""));
 }
 
 /// POV-Ray's recursive anti-aliasing at its default settings, and ours at the fewest rays that are no further from its
@@ -142,14 +142,14 @@ Figure adaptive_figure(const MeasureContext& context, Scene& scene, const std::s
   const std::string what =
       "POV-Ray's tracing time (+A0.3 +AM2 +R3) / ours, adaptive, at no more error, " + picture_text(scene, 1);
   if (!std::isfinite(least)) {
-    Figure figure = figure_of(what, {}, BoundKind::at_least, kAdaptiveRatio, "");
+    Figure figure = figure_of(what, {}, BoundKind::at_least, kLeastPovrayAdaptive, "");
     figure.problem = fmt::format("no setting of ours is within an error of {:.5f}", their_error);
     return figure;
   }
   const PairedSpread pairs = measure_pairs([&] { return povray.trace(theirs).trace_cpu_seconds; },
                                            [&] { return traced(scene, best).seconds; }, few_pairs());
   return figure_of(
-      what, pairs.ratio, BoundKind::at_least, kAdaptiveRatio,
+      what, pairs.ratio, BoundKind::at_least, kLeastPovrayAdaptive,
       fmt::format("{:.3f} s against {:.3f} s; root mean square error {:.5f} against {:.5f} (threshold {:.3f}, "
                   "levels {}), each to its own picture of 81 and 256 samples a pixel",
                   pairs.a.median, pairs.b.median, their_error, our_error, best.adaptive.threshold,
@@ -210,7 +210,7 @@ Figure launch_figure(const MeasureContext& context, const SceneDescription& desc
       measure_pairs([&] { return povray.run({"-A"}, threads).wall_seconds; }, our_run, few_pairs());
   return figure_of(
       "POV-Ray's time from launch to PNG / ours, " + picture_text(scene, threads), pairs.ratio, BoundKind::at_least,
-      kLaunchRatio,
+      kLeastPovrayLaunch,
       fmt::format("{:.2f} s against {:.2f} s; the mesh is text for both (OBJ for us)", pairs.a.median, pairs.b.median));
 }
 
@@ -289,7 +289,7 @@ Figure distance_figure(const MeasureContext& context, Scene& scene, const std::s
       "pixels away from edges where POV-Ray sees another distance, or only one of us a shape, and "
       "the truth in double precision is not with us, " +
           picture_text(scene, 1),
-      {share, share, share, 1}, BoundKind::at_most, 0,
+      {share, share, share, 1}, BoundKind::at_most, kMostPovrayDiffering,
       fmt::format("{} pixels compared; hit by one alone {}, at another distance {}; in {} of them the "
                   "truth sees what we see; largest difference {:.2g} of a tolerance of {:.2g} (a "
                   "level and a half of 16 bits)",

@@ -9,6 +9,7 @@
 
 #include "benchmarks/povray_run.h"
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/row_bounds.h"
 #include "renderer/render.h"
 #include "renderer/spd_scenes.h"
 
@@ -19,9 +20,6 @@ constexpr int kWidth = 320, kHeight = 240;
 constexpr std::int64_t kTerrainTriangles = 50'000;
 /// Samples to a pixel and axis, the middle one at its center: what changes between them makes the pixel an edge.
 constexpr int kFine = 5;
-/// Of pixels away from edges, percent: at terminators and where shadows are thinner than our samples lie apart, both
-/// round their own way.
-constexpr double kMostDiffering = 0.01;
 
 MaterialDescription white(const std::string& name) {
   MaterialDescription material;
@@ -177,7 +175,7 @@ Figure compare(const MeasureContext& context, Scene& scene) {
   figure.unit = "%";
   figure.measured = {share, share, share, 1};
   figure.kind = BoundKind::at_most;
-  figure.bound = kMostDiffering;
+  figure.bound = kMostMaskDiffering;
   figure.note = fmt::format(
       "{} pixels compared, {} of them in shadow or turned away: {} differ in hit or miss, {} in distance (by more than "
       "{:.2g}), {} in light or shadow; of {} pixels along edges {}, {} and {}",

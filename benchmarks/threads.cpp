@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 #include "renderer/render.h"
 
@@ -24,7 +25,7 @@ std::vector<Figure> measure_threads(const MeasureContext& context) {
                               scene.description.image.width, scene.description.image.height);
     figure.measured = pairs.ratio;
     figure.kind = BoundKind::at_least;
-    figure.bound = 1.75;
+    figure.bound = kLeastThreads;
     figure.note = fmt::format("{:.4f} s on one thread, {:.4f} s on two", pairs.a.median, pairs.b.median);
     figures.push_back(figure);
   }

@@ -9,12 +9,11 @@
 #include "benchmarks/intersection_benchmark.h"
 #include "benchmarks/recording_intersector.h"
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 
 namespace raytree::benchmarks {
 namespace {
-
-constexpr double kLeastShare = 0.9;
 
 /// The rays that get the same answer in both scenes, in their order.
 RaySet unstopped(const RaySet& rays, const Scene& a, const Scene& b) {
@@ -119,7 +118,7 @@ std::vector<Figure> measure_types(const MeasureContext& context) {
         rays.size(), name);
     figure.measured = pairs.ratio;
     figure.kind = BoundKind::at_least;
-    figure.bound = kLeastShare;
+    figure.bound = kLeastTypesShare;
     if (hits_whole != hits_alone)
       figure.problem = fmt::format("{} hits with the spheres, {} without", hits_whole, hits_alone);
     figure.note = fmt::format("{:.1f} ns a ray alone, {:.1f} ns with spheres",

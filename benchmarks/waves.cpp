@@ -4,6 +4,7 @@
 #include "benchmarks/recording_intersector.h"
 #include "benchmarks/recursive_tracer.h"
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 
 namespace raytree::benchmarks {
@@ -25,7 +26,7 @@ std::vector<Figure> measure_waves(const MeasureContext& context) {
       figure.what = "single-ray recursion / generations, " + picture_text(scene, threads);
       figure.measured = pairs.ratio;
       figure.kind = BoundKind::at_least;
-      figure.bound = threads == 1 ? 1.2 : 1.4;
+      figure.bound = threads == 1 ? kLeastWaves : kLeastWavesOfTwo;
       figure.problem = picture_mismatch(render_recursively(scene, embree, threads), render(scene, options));
       figure.note = fmt::format("{:.4f} s by recursion, {:.4f} s by generations", pairs.a.median, pairs.b.median);
       figures.push_back(figure);

@@ -231,6 +231,7 @@ EmbreeBenchScene::EmbreeBenchScene(const ShapeSet& shapes, const BenchSceneOptio
     scene_parts.add = [kept, &options](RTCDevice device, RTCScene scene, GeometryId id) {
       kept->attach_company(device, scene, id, options.company == BenchCompany::quad_and_sphere);
     };
+  scene_parts.isa = options.isa;
   parts_ = std::move(parts);
   EmbreeOptions embree_options;
   embree_options.threads = options.threads;
@@ -248,8 +249,9 @@ EmbreeBenchScene::~EmbreeBenchScene() = default;
 std::size_t EmbreeBenchScene::memory_bytes() const noexcept { return tracer_->memory_bytes(); }
 std::size_t EmbreeBenchScene::peak_memory_bytes() const noexcept { return tracer_->peak_memory_bytes(); }
 
-int EmbreeBenchScene::widest_call() {
-  const embree::Device device(rtcNewDevice("threads=1"));
+int EmbreeBenchScene::widest_call(const std::string& isa) {
+  const std::string config = isa.empty() ? "threads=1" : "threads=1,isa=" + isa;
+  const embree::Device device(rtcNewDevice(config.c_str()));
   int widest = 1;
   for (const auto& [width, property] : {std::pair(4, RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED),
                                         {8, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED},

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "geometry/embree_intersector.h"
 #include "geometry/ray_batch.h"
@@ -21,6 +22,9 @@ inline constexpr std::size_t kBenchGeometryCount = 3;
 /// hierarchy costs all others.
 enum class BenchCompany : std::uint8_t { none, quad, quad_and_sphere };
 
+/// Instruction sets that Embree has kernels of.
+inline constexpr const char* kEmbreeIsas[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
+
 struct BenchSceneOptions {
   BenchGeometry geometry = BenchGeometry::triangles;
   BenchCompany company = BenchCompany::none;
@@ -28,6 +32,7 @@ struct BenchSceneOptions {
   EmbreeOptions::Quality quality = EmbreeOptions::Quality::medium;
   int threads = 0;                          ///< of the build; 0: all of the arena
   const std::atomic<bool>* stop = nullptr;  ///< ends the build early
+  std::string isa;                          ///< one of kEmbreeIsas that Embree is held to; empty: the processor's best
 };
 
 /// rtcIntersect1, 4, 8 or 16, with Embree's coherent flag or without.
@@ -38,7 +43,8 @@ struct BenchCall {
 
 class EmbreeBenchScene {
  public:
-  /// Over shapes, which must outlive it. Throws Error as EmbreeIntersector does.
+  /// Over shapes, which must outlive it. Throws Error as EmbreeIntersector does, and where the processor lacks the
+  /// instruction set.
   EmbreeBenchScene(const ShapeSet& shapes, const BenchSceneOptions& options);
   ~EmbreeBenchScene();
 
@@ -49,8 +55,9 @@ class EmbreeBenchScene {
   /// Triangles a primitive handed over, in the mean; 1 for triangles, 2 at most for quads, 128 for grids.
   double triangles_per_primitive() const noexcept { return triangles_per_primitive_; }
 
-  /// Width of the largest packets that Embree has calls of its own for on this processor: 1, 4, 8 or 16.
-  static int widest_call();
+  /// Width of the largest packets that Embree has calls of its own for on this processor, held to an instruction set
+  /// if one is named: 1, 4, 8 or 16.
+  static int widest_call(const std::string& isa = {});
 
   /// Whether Embree's triangles are others than the meshes': grids halve their quads their own way.
   bool has_own_surface() const noexcept;

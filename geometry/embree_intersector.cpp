@@ -296,9 +296,13 @@ EmbreeIntersector::EmbreeIntersector(const ShapeSet& shapes, const EmbreeOptions
   State& state = *state_;
   state.shapes = &shapes;
   state.few = FewShapes(shapes, options.most_few_shapes);
-  const std::string config = options.threads > 0 ? "threads=" + std::to_string(options.threads) : std::string();
+  std::string config = options.threads > 0 ? "threads=" + std::to_string(options.threads) : std::string();
+  if (!parts.isa.empty()) config += (config.empty() ? "isa=" : ",isa=") + parts.isa;
   state.device.reset(rtcNewDevice(config.c_str()));
-  if (!state.device) throw Error(ErrorKind::failure, {}, "Embree does not start on this processor");
+  if (!state.device)
+    throw Error(ErrorKind::failure, {},
+                parts.isa.empty() ? "Embree does not start on this processor"
+                                  : "Embree's " + parts.isa + " does not run on this processor");
   RTCDevice device = state.device.get();
 
   rtcSetDeviceErrorFunction(

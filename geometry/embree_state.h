@@ -35,6 +35,7 @@ struct SceneParts {
   std::function<void(RTCGeometry, const TriangleMesh&)> set_mesh;
   /// Attaches more to the top scene, with ids from the given one on.
   std::function<void(RTCDevice, RTCScene, GeometryId)> add;
+  std::string isa;  ///< BenchSceneOptions::isa
 };
 
 /// Has a quad geometry share a mesh's positions and the list of its quads.

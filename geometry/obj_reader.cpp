@@ -6,70 +6,20 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "geometry/mesh_checks.h"
+#include "geometry/obj_counts.h"
 #include "geometry/obj_statements.h"
 #include "geometry/obj_tags.h"
+#include "geometry/obj_values.h"
 #include "geometry/text_scanning.h"
 
 namespace raytree {
 namespace {
 
 using namespace text;
-
-struct Counts {
-  std::size_t positions = 0, normals = 0, texture_coordinates = 0, faces = 0, corners = 0;
-  bool all_triangles = true, names_normals = false, names_texture = false;
-
-  void add(const Counts& other) {
-    positions += other.positions;
-    normals += other.normals;
-    texture_coordinates += other.texture_coordinates;
-    faces += other.faces;
-    corners += other.corners;
-    all_triangles = all_triangles && other.all_triangles;
-    names_normals = names_normals || other.names_normals;
-    names_texture = names_texture || other.names_texture;
-  }
-};
-
-/// What a character is in a face: the pass that counts looks at each once.
-enum FaceCharacter : std::uint8_t { kOrdinary = 0, kBlank = 1, kSlash = 2, kComment = 4 };
-constexpr auto kFaceCharacters = [] {
-  std::array<std::uint8_t, 256> table{};
-  for (std::size_t c = 0; c < table.size(); ++c)
-    table[c] = is_blank(static_cast<char>(c)) ? kBlank : c == '/' ? kSlash : c == '#' ? kComment : kOrdinary;
-  return table;
-}();
-
-void count_face(const char* p, const char* end, Counts& counts) {
-  std::size_t corners = 0;
-  unsigned before = kBlank, slashes = 0;
-  bool texture = false, normal = false;
-  for (; p != end; ++p) {
-    const unsigned now = kFaceCharacters[static_cast<unsigned char>(*p)];
-    if (now == kComment) break;
-    if (before == kBlank) {
-      corners += now != kBlank;
-      slashes = 0;
-    }
-    // a/b names texture coordinates, a//c and a/b/c a normal.
-    const bool first_behind_slash = before == kSlash && now == kOrdinary;
-    texture |= first_behind_slash & (slashes == 1);
-    normal |= first_behind_slash & (slashes == 2);
-    slashes += now == kSlash;
-    before = now;
-  }
-  counts.names_texture |= texture;
-  counts.names_normals |= normal;
-  ++counts.faces;
-  counts.corners += corners;
-  counts.all_triangles = counts.all_triangles && corners == 3;
-}
 
 /// The names in force from a face on; the names are places in the text, empty where the chunk has not set them.
 struct GroupChange {
@@ -103,9 +53,10 @@ class ObjParser {
     borders_ = chunk_borders(text_, newline_);
     const std::size_t chunk_count = borders_.size() - 1;
     starts_.resize(chunk_count + 1);
-    tbb::parallel_for(std::size_t(0), chunk_count, [&](std::size_t i) { starts_[i + 1] = count_chunk(i); });
+    tbb::parallel_for(std::size_t(0), chunk_count,
+                      [&](std::size_t i) { starts_[i + 1] = count_obj(borders_[i], borders_[i + 1], newline_); });
     for (std::size_t i = 0; i < chunk_count; ++i) {
-      Counts sum = starts_[i];
+      ObjCounts sum = starts_[i];
       sum.add(starts_[i + 1]);
       starts_[i + 1] = sum;
     }
@@ -136,23 +87,6 @@ class ObjParser {
     if (text_.find('\n') == std::string_view::npos && text_.find('\r') != std::string_view::npos) newline_ = '\r';
   }
 
-  Counts count_chunk(std::size_t chunk) const {
-    Counts counts;
-    for_each_obj_statement(borders_[chunk], borders_[chunk + 1], newline_,
-                           [&](ObjStatement kind, const char* p, const char* end, const char*) {
-                             if (kind == ObjStatement::position)
-                               ++counts.positions;
-                             else if (kind == ObjStatement::normal)
-                               ++counts.normals;
-                             else if (kind == ObjStatement::texture_coordinates)
-                               ++counts.texture_coordinates;
-                             else if (kind == ObjStatement::face)
-                               count_face(p, end, counts);
-                             return true;
-                           });
-    return counts;
-  }
-
   void allocate() {
     for (const std::size_t count : {totals_.positions, totals_.normals, totals_.texture_coordinates, totals_.corners})
       if (count >= kNoIndex)
@@ -170,68 +104,25 @@ class ObjParser {
     }
   }
 
-  /// Reads `count` numbers; returns the place after them, nullptr with `error` set otherwise.
-  static const char* scan_numbers(const char* p, const char* end, double* values, int count, int required,
-                                  std::string& error) {
-    for (int i = 0; i < count; ++i) {
-      p = skip_blanks(p, end);
-      if (p == end || *p == '#') {
-        if (i >= required) return p;
-        error = "expected " + std::to_string(required) + " numbers, found " + std::to_string(i);
-        return nullptr;
-      }
-      const char* const after = scan_double(p, end, values[i]);
-      if (!after || (after != end && !is_blank(*after) && *after != '#')) {
-        error = in_quotes(word_at(p, end)) + " is not a number";
-        return nullptr;
-      }
-      p = after;
-    }
-    return p;
-  }
-
-  /// Reads one index and checks it; `seen` of `total` elements stand before this line.
-  static const char* scan_index(const char* p, const char* end, std::size_t seen, std::size_t total, const char* what,
-                                std::uint32_t& index, std::string& error) {
-    std::int64_t value = 0;
-    const char* const after = scan_integer(p, end, value);
-    if (!after) {
-      error = in_quotes(word_at(p, end)) +
-              " is not a corner of a face (vertex, vertex/texture, vertex//normal or "
-              "vertex/texture/normal)";
-      return nullptr;
-    }
-    const std::int64_t zero_based = value > 0 ? value - 1 : static_cast<std::int64_t>(seen) + value;
-    if (value == 0 || zero_based < 0 || zero_based >= static_cast<std::int64_t>(total)) {
-      error = std::string("the face refers to ") + what + " " + std::to_string(value) + "; " +
-              (value == 0 ? std::string("indices begin at 1")
-                          : "there are " + std::to_string(value < 0 ? seen : total) +
-                                (value < 0 ? " before this line" : " in the file"));
-      return nullptr;
-    }
-    index = static_cast<std::uint32_t>(zero_based);
-    return after;
-  }
-
-  bool parse_face(const char* p, const char* end, Counts& at, std::string& error) {
+  bool parse_face(const char* p, const char* end, ObjCounts& at, std::string& error) {
     const std::size_t first = at.corners;
     for (;;) {
       p = skip_blanks(p, end);
       if (p == end || *p == '#') break;
       const char* const corner = p;
       std::uint32_t texture = kNoIndex, normal = kNoIndex;
-      p = scan_index(p, end, at.positions, totals_.positions, "vertex", mesh_.corners[at.corners], error);
+      p = scan_obj_index(p, end, at.positions, totals_.positions, "vertex", mesh_.corners[at.corners], error);
       if (!p) return false;
       const auto corner_ends = [&] { return p == end || is_blank(*p) || *p == '#'; };
       if (p != end && *p == '/') {
         ++p;
         if (!corner_ends() && *p != '/')
-          p = scan_index(p, end, at.texture_coordinates, totals_.texture_coordinates, "texture coordinates", texture,
-                         error);
+          p = scan_obj_index(p, end, at.texture_coordinates, totals_.texture_coordinates, "texture coordinates",
+                             texture, error);
         if (!p) return false;
         if (p != end && *p == '/') {
           ++p;
-          if (!corner_ends()) p = scan_index(p, end, at.normals, totals_.normals, "normal", normal, error);
+          if (!corner_ends()) p = scan_obj_index(p, end, at.normals, totals_.normals, "normal", normal, error);
           if (!p) return false;
         }
       }
@@ -250,7 +141,7 @@ class ObjParser {
 
   bool parse_position(const char* p, const char* end, Vec3f& position, Findings& found, const char* source) {
     double v[3];
-    p = scan_numbers(p, end, v, 3, 3, found.error);
+    p = scan_obj_numbers(p, end, v, 3, 3, found.error);
     if (!p) return false;
     position = Vec3f(static_cast<float>(v[0] - mesh_.origin.x), static_cast<float>(v[1] - mesh_.origin.y),
                      static_cast<float>(v[2] - mesh_.origin.z));
@@ -268,7 +159,7 @@ class ObjParser {
 
   void parse_chunk(std::size_t chunk) {
     Findings& found = findings_[chunk];
-    Counts at = starts_[chunk];
+    ObjCounts at = starts_[chunk];
     bool names_changed = false;
     for_each_obj_statement(borders_[chunk], borders_[chunk + 1], newline_,
                            [&](ObjStatement kind, const char* p, const char* end, const char* source) {
@@ -280,7 +171,7 @@ class ObjParser {
                                case ObjStatement::normal:
                                  if (totals_.names_normals) {
                                    double v[3];
-                                   good = scan_numbers(p, end, v, 3, 3, found.error) != nullptr;
+                                   good = scan_obj_numbers(p, end, v, 3, 3, found.error) != nullptr;
                                    if (good)
                                      mesh_.normals[at.normals] = Vec3f(
                                          static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
@@ -290,7 +181,7 @@ class ObjParser {
                                case ObjStatement::texture_coordinates:
                                  if (totals_.names_texture) {
                                    double v[2] = {0, 0};
-                                   good = scan_numbers(p, end, v, 2, 1, found.error) != nullptr;
+                                   good = scan_obj_numbers(p, end, v, 2, 1, found.error) != nullptr;
                                    if (good)
                                      mesh_.texture_coordinates[at.texture_coordinates] =
                                          Vec2f(static_cast<float>(v[0]), static_cast<float>(v[1]));
@@ -499,8 +390,8 @@ class ObjParser {
   Warnings& warnings_;
   char newline_ = '\n';
   std::vector<const char*> borders_;
-  std::vector<Counts> starts_;  // what stands before chunk i; the last: in the whole text
-  Counts totals_;
+  std::vector<ObjCounts> starts_;  // what stands before chunk i; the last: in the whole text
+  ObjCounts totals_;
   std::vector<Findings> findings_;
   PolygonMesh mesh_;
 };

@@ -26,7 +26,19 @@ struct MtlMaterial {
   std::optional<int> illumination;                                // illum
 };
 
-enum class Dropped { texture, emission, physically_based, spectrum, matte, unknown };
+/// What is valid but odd, in the order of its warnings: dropped, or a number taken as the nearest that means something.
+enum class Odd {
+  texture,
+  emission,
+  physically_based,
+  spectrum,
+  matte,
+  unknown,
+  negative_color,
+  low_exponent,
+  no_index,
+  share
+};
 
 class MtlParser {
  public:
@@ -44,7 +56,7 @@ class MtlParser {
       read_statement(p, line_end);
       p = line_end == end ? end : line_end + 1;
     }
-    report_dropped();
+    report_odd();
     return std::move(materials_);
   }
 
@@ -76,12 +88,19 @@ class MtlParser {
     fail(std::string(statement) + " needs a number, not " + in_quotes(std::string(next_word(p, end))));
   }
 
+  /// A number from 0 to 1, which one beyond is taken for.
+  double share(const char* p, const char* end, std::string_view statement) {
+    const double stated = required_number(p, end, statement), taken = std::clamp(stated, 0.0, 1.0);
+    if (taken != stated) note(Odd::share);
+    return taken;
+  }
+
   /// r g b, or one number for all three; CIE XYZ becomes Rec.709. None where a spectrum's file is named.
   std::optional<Rgb> color(const char* p, const char* end, std::string_view statement) {
     const char* after_word = p;
     const std::string_view word = next_word(after_word, end);
     if (word == "spectral") {
-      drop(Dropped::spectrum);
+      note(Odd::spectrum);
       return std::nullopt;
     }
     const bool is_xyz = word == "xyz";
@@ -102,7 +121,8 @@ class MtlParser {
       v = {3.2404542 * v[0] - 1.5371385 * v[1] - 0.4985314 * v[2],
            -0.9692660 * v[0] + 1.8760108 * v[1] + 0.0415560 * v[2],
            0.0556434 * v[0] - 0.2040259 * v[1] + 1.0572252 * v[2]};
-    // Colors outside Rec.709 have negative components, which no picture shows.
+    // Colors of XYZ outside Rec.709 have negative components, which no picture shows; stated ones are worth a word.
+    if (!is_xyz && std::min({v[0], v[1], v[2]}) < 0) note(Odd::negative_color);
     const auto component = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1e18)); };
     return Rgb(component(v[0]), component(v[1]), component(v[2]));
   }
@@ -133,28 +153,30 @@ class MtlParser {
       material.filter = color(p, end, word);
     } else if (word == "Ns") {
       material.exponent = required_number(p, end, word);
+      if (*material.exponent < 1) note(Odd::low_exponent);
     } else if (word == "Ni") {
       material.index = required_number(p, end, word);
+      if (*material.index <= 0) note(Odd::no_index);
     } else if (word == "d") {
       const char* halo = p;
       if (next_word(halo, end) == "-halo") p = halo;  // less opaque toward the silhouette: taken as everywhere
-      material.dissolve = std::clamp(required_number(p, end, word), 0.0, 1.0);
+      material.dissolve = share(p, end, word);
     } else if (word == "Tr") {
-      material.transparency = std::clamp(required_number(p, end, word), 0.0, 1.0);
+      material.transparency = share(p, end, word);
     } else if (word == "illum") {
       const double model = required_number(p, end, word);
       if (model != std::floor(model) || model < 0 || model > 10) {
         const char* after = p;
         fail("illum is a whole number from 0 to 10, not " + in_quotes(std::string(next_word(after, end))));
       }
-      if (model == 10) drop(Dropped::matte);
+      if (model == 10) note(Odd::matte);
       material.illumination = static_cast<int>(model);
     } else if (word == "Ke") {
-      if (const auto emission = color(p, end, word); emission && !is_black(*emission)) drop(Dropped::emission);
+      if (const auto emission = color(p, end, word); emission && !is_black(*emission)) note(Odd::emission);
     } else if (is_texture(word)) {
-      drop(Dropped::texture);
+      note(Odd::texture);
     } else if (word != "sharpness") {  // of reflection maps, which are dropped
-      drop(is_physically_based(word) ? Dropped::physically_based : Dropped::unknown);
+      note(is_physically_based(word) ? Odd::physically_based : Odd::unknown);
     }
   }
 
@@ -169,20 +191,24 @@ class MtlParser {
     return false;
   }
 
-  void drop(Dropped what) {
-    auto& [line, count] = dropped_[what];
+  void note(Odd what) {
+    auto& [line, count] = odd_[what];
     if (count++ == 0) line = line_;
   }
 
-  void report_dropped() {
-    static const std::map<Dropped, std::string> messages = {
-        {Dropped::texture, "textures dropped: colors are those of the numbers"},
-        {Dropped::emission, "emission (Ke) dropped: surfaces give no light of their own"},
-        {Dropped::physically_based, "statements of the physically based extension dropped"},
-        {Dropped::spectrum, "colors given by a file of their spectrum dropped"},
-        {Dropped::matte, "illum 10 (shadows on invisible surfaces) taken as illum 2"},
-        {Dropped::unknown, "unknown statements skipped"}};
-    for (const auto& [what, place] : dropped_)
+  void report_odd() {
+    static const std::map<Odd, std::string> messages = {
+        {Odd::texture, "textures dropped: colors are those of the numbers"},
+        {Odd::emission, "emission (Ke) dropped: surfaces give no light of their own"},
+        {Odd::physically_based, "statements of the physically based extension dropped"},
+        {Odd::spectrum, "colors given by a file of their spectrum dropped"},
+        {Odd::matte, "illum 10 (shadows on invisible surfaces) taken as illum 2"},
+        {Odd::unknown, "unknown statements skipped"},
+        {Odd::negative_color, "colors with negative components, taken as 0"},
+        {Odd::low_exponent, "highlight exponents (Ns) below 1, taken as 1"},
+        {Odd::no_index, "indices of refraction (Ni) that are not positive, taken as 1.5"},
+        {Odd::share, "opacities (d, Tr) outside 0 to 1, taken as the nearer of the two"}};
+    for (const auto& [what, place] : odd_)
       warnings_.push_back({{name_, place.first, {}}, messages.at(what), place.second});
   }
 
@@ -192,7 +218,7 @@ class MtlParser {
   char newline_ = '\n';
   std::int64_t line_ = 0;
   std::vector<MtlMaterial> materials_;
-  std::map<Dropped, std::pair<std::int64_t, std::int64_t>> dropped_;  ///< line of the first, count
+  std::map<Odd, std::pair<std::int64_t, std::int64_t>> odd_;  ///< line of the first, count
 };
 
 /// What an illumination model switches on (the format's table of illum 0 to 10).

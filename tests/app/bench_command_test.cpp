@@ -1,6 +1,8 @@
 // `raytree bench` from outside: what it prints as text and JSON, what its flags choose, what it refuses.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -100,6 +102,49 @@ TEST(BenchCommand, KeepsToATimeAndSaysWhatItLeavesOut) {
   EXPECT_TRUE(contains(result.out, "left out: terrain of 10 M: it would take")) << result.out;
   EXPECT_TRUE(contains(result.out, "scene spd-balls")) << result.out;
   EXPECT_LT(result.seconds, 60);
+}
+
+// SSE has packets of four, AVX2 of eight; answers are the same but for rounding at outlines.
+TEST(BenchCommand, HoldsEmbreeToAnInstructionSet) {
+  const auto list = [](const char* isa) {
+    const ProgramResult result = run_bench({"--list", "--isa", isa});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.out;
+  };
+  const std::string narrow = list("sse4.2");
+  EXPECT_TRUE(contains(narrow, "primary/triangles/robust/medium/4\n"));
+  EXPECT_FALSE(contains(narrow, "medium/8")) << narrow;
+  EXPECT_FALSE(contains(narrow, "/seam")) << "the renderer's tracer takes the best";
+  const auto run = [](const std::vector<std::string>& more) {
+    const ProgramResult result =
+        run_bench(with({"--json", "--filter", "(primary|bounce)/triangles/robust/medium/4$"}, more));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out);
+  };
+  const Json held = run({"--isa", "sse4.2"}), best = run({});
+  EXPECT_EQ(held["machine"]["tracer_held_to"], "sse4.2");
+  EXPECT_FALSE(best["machine"].contains("tracer_held_to"));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json &a = held["scenes"][0]["rows"][i], &b = best["scenes"][0]["rows"][i];
+    EXPECT_EQ(a["name"], b["name"]);
+    EXPECT_NEAR(a["hits"].get<double>(), b["hits"].get<double>(), 2) << a["name"];
+  }
+  // In other bits: what was asked for reached Embree.
+  EXPECT_NE(held["scenes"][0]["rows"][0]["checksum"], best["scenes"][0]["rows"][0]["checksum"]);
+  EXPECT_TRUE(
+      contains(run_bench({"--isa", "avx", "--filter", "primary/triangles/robust/medium/1$"}).out, ", held to avx\n"));
+  expect_bad_input({"bench", "spheres-1980", "--isa", "avx3"}, {"--isa", "avx3", "sse4.2", "did you mean"});
+}
+
+TEST(BenchCommand, AReportThatCannotBeWrittenIsAFailure) {
+  for (const char* more : {"--json", "--quiet"}) {
+    const std::string line = std::string(RAYTREE_PROGRAM) +
+                             " bench cone --size 16x12 --repetitions 1 --filter primary/seam " + more +
+                             " >/dev/full 2>/dev/null";
+    const int status = std::system(line.c_str());
+    EXPECT_TRUE(WIFEXITED(status)) << line;
+    EXPECT_EQ(WEXITSTATUS(status), 1) << line;
+  }
 }
 
 TEST(BenchCommand, WrongInputIsNamed) {

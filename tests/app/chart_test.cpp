@@ -170,6 +170,41 @@ TEST(ChartCommand, APlantedDominatedSettingNeverReachesTheFront) {
   EXPECT_TRUE(contains(svg, "<circle class=\"point\" data-point=\"" + std::to_string(planted) + "\"")) << "greyed";
 }
 
+TEST(ChartInput, TheFolderMayEndInASlash) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_program({"chart", "cone", "-o", folder.path("new") + "/", "--size", "16x12", "--budget", "1s"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "wrote " + folder.path("new/chart.html"))) << result.err;
+  EXPECT_FALSE(file_text(folder.path("new/chart.html")).empty());
+}
+
+// Found out before anything is measured, and nothing is left behind.
+TEST(ChartInput, AFolderThatCannotBeWrittenIsNamed) {
+  const TemporaryFolder folder;
+  const auto chart = [&](const std::string& out) {
+    return run_program({"chart", "cone", "-o", out, "--size", "16x12", "--budget", "60s"});
+  };
+  for (const std::string out : {"/proc/none", "/proc/none/", "/proc"}) {
+    const ProgramResult result = chart(out);
+    EXPECT_EQ(result.status, 1) << out;
+    EXPECT_TRUE(contains(result.err, "error: /proc") && contains(result.err, "cannot")) << result.err;
+    EXPECT_LT(result.seconds, 10) << out;
+  }
+  // A folder where a file is to stand, and the other way round.
+  for (const char* file : {"chart.html", "reference.exr"}) {
+    std::filesystem::create_directories(folder.path(std::string("taken-") + file) + "/" + file);
+    const ProgramResult result = chart(folder.path(std::string("taken-") + file));
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_TRUE(contains(result.err, file) && contains(result.err, "is a folder")) << result.err;
+  }
+  std::filesystem::create_directory(folder.path("own"));
+  folder.write("own/pictures", "");
+  expect_bad_input({"chart", "cone", "-o", folder.path("own")}, {"own/pictures", "is a file"});
+  for (const std::string& name : folder.names())
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path(name)), {}), 1) << name;
+}
+
 TEST(ChartInput, RefusesWhatItCannotDo) {
   const TemporaryFolder folder;
   const std::string out = folder.path("chart");

@@ -178,6 +178,41 @@ TEST(CommandLineErrors, OutputsAreCheckedBeforeAnythingIsRead) {
   wrong({"-o", folder.path("folder.png")}, {"is a folder"});
 }
 
+TEST(CommandLineErrors, NoFileIsWrittenTwice) {
+  TemporaryFolder folder;
+  const std::string picture = folder.path("a.png"), link = folder.path("link.png"), other = folder.path("b.png");
+  write_text(picture, "of before");
+  std::filesystem::create_directory(folder.path("inner"));
+  std::filesystem::create_symlink(picture, link);
+  const auto wrong = [](const std::vector<std::string>& flags, const std::vector<std::string>& parts) {
+    expect_bad_input(with({"render", "no-such-scene"}, flags), parts);
+  };
+  wrong({"-o", picture, "-o", folder.path("./a.png")}, {"./a.png", "are one file"});
+  wrong({"-o", picture, folder.path("inner/../a.png")}, {"inner/../a.png", "are one file"});
+  wrong({"-o", link, "-o", picture}, {"link.png", "are one file"});
+  wrong({"-o", other, "-o", folder.path("./b.png")}, {"are one file"});  // not there yet
+  wrong({"-o", picture, "--stats", folder.path("./a.png")}, {"--stats", "a.png is the image to write"});
+  const std::string scene = folder.path("scene.json");
+  write_text(scene, R"({"raytree": 1})");
+  expect_bad_input({"render", scene, "-o", other, "--stats", folder.path("./scene.json")}, {"--stats", "is the scene"});
+  EXPECT_EQ(file_text(picture), "of before");
+  EXPECT_EQ(file_text(scene), R"({"raytree": 1})");
+  EXPECT_FALSE(std::filesystem::exists(other));
+}
+
+TEST(CommandLineWarnings, FlagsOfAdaptiveSamplingThatDoNothingAreNamed) {
+  TemporaryFolder folder;
+  const std::vector<std::string> render = small_render(folder.path("a.png"));
+  const std::vector<std::string> flags{"--threshold", "0.1", "--levels", "2", "--minimum-level", "1"};
+  const ProgramResult idle = run_program(with(with(render, flags), {"--antialias", "grid:2"}));
+  EXPECT_EQ(idle.status, 0) << idle.err;
+  for (const char* flag : {"--threshold", "--levels", "--minimum-level"})
+    EXPECT_TRUE(contains(idle.err, std::string(flag) + " has no effect: it is for --antialias whitted")) << idle.err;
+  const ProgramResult used = run_program(with(with(render, flags), {"--antialias", "whitted"}));
+  EXPECT_EQ(used.status, 0) << used.err;
+  EXPECT_FALSE(contains(used.err, "has no effect")) << used.err;
+}
+
 TEST(CommandLineErrors, ScenesThatAreNone) {
   TemporaryFolder folder;
   write_text(folder.path("model.stl"), "solid");

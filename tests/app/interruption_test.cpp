@@ -13,13 +13,16 @@ namespace {
 class CommandLineInterruption : public testing::TestWithParam<int> {};
 
 TEST_P(CommandLineInterruption, StopsWithinASecondAndLeavesNothing) {
-  // Into the reading, the generating, the build and the tracing of a scene that takes much longer than that.
+  // Into the reading, the generating, the build, the tessellation and the tracing, adaptive too, of scenes that take
+  // much longer than that.
   const std::vector<double> delays =
       GetParam() == SIGINT ? std::vector<double>{0.05, 0.4, 1.2} : std::vector<double>{0.3};
   for (const double after : delays) {
     for (const std::vector<std::string>& scene :
          {std::vector<std::string>{"terrain", "--set", "shapes.terrain.triangles=20000000"},
-          {kScene, "--size", "4000x4000", "--antialias", "grid:4"}}) {
+          {kScene, "--size", "4000x4000", "--antialias", "grid:4"},
+          {kScene, "--size", "4000x4000", "--antialias", "whitted", "--threshold", "0", "--levels", "6"},
+          {"teapot", "--rate", "1024"}}) {
       TemporaryFolder folder;
       ProgramOptions options;
       options.signal = GetParam();

@@ -77,6 +77,16 @@ TEST(FlagMessages, SayTheDepthThatIsAllowed) {
     EXPECT_EQ(render_error({"--depth", depth}), "--depth: \"" + depth + "\" is not a whole number from 1 to 1000000");
 }
 
+TEST(FlagMessages, AFlagWithoutItsValueIsNamedAsItWasTyped) {
+  EXPECT_EQ(error_line({"render", "cone", "-o"}), "-o: no value follows; it takes FILE");
+  EXPECT_EQ(error_line({"render", "cone", "--output"}), "--output: no value follows; it takes FILE");
+  EXPECT_EQ(error_line({"render", "cone", "-o", "a.png", "--size"}), "--size: no value follows; it takes WxH");
+  EXPECT_EQ(error_line({"render", "cone", "--size", "--depth", "3", "-o", "a.png"}),
+            "--size: no value follows; it takes WxH");
+  EXPECT_EQ(error_line({"render", "cone", "--camera=", "-o", "a.png"}), "--camera: the value is empty");
+  EXPECT_EQ(error_line({"info", "cone", "--set"}), "--set: no value follows; it takes PATH=VALUE");
+}
+
 TEST(FlagMessages, AFlagGivenTwiceIsNamed) {
   EXPECT_EQ(error_line({"info", kScene, "--size", "16x16", "--size", "32x32"}), "--size is given twice");
   EXPECT_EQ(error_line({"info", kScene, "--rate", "1", "--rate", "2", "--rate", "3"}), "--rate is given 3 times");

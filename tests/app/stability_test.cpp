@@ -75,6 +75,30 @@ TEST(StabilityCommand, AFolderThatCannotBeMadeIsAFailure) {
   EXPECT_TRUE(contains(result.err, "/dev/null/x")) << result.err;
 }
 
+// Found out before anything is measured: the whole suite is asked for.
+TEST(StabilityCommand, AFolderThatCannotBeWrittenIsNamed) {
+  TemporaryFolder folder;
+  for (const std::string out : {"/proc/none", "/proc/none/", "/proc"}) {
+    const ProgramResult result = run_program({"stability", "-o", out});
+    EXPECT_EQ(result.status, 1) << out;
+    EXPECT_TRUE(contains(result.err, "error: /proc") && contains(result.err, "cannot")) << result.err;
+    EXPECT_TRUE(result.out.empty()) << out;
+    EXPECT_LT(result.seconds, 2) << out;
+  }
+  expect_bad_input({"stability", "-o", folder.write("file", "")}, {"file", "is a file", "folder"});
+  std::filesystem::create_directories(folder.path("taken/stability.json"));
+  expect_bad_input({"stability", "-o", folder.path("taken")}, {"stability.json", "is a folder"});
+  EXPECT_FALSE(std::filesystem::exists(folder.path("taken/stability.html")));
+}
+
+TEST(StabilityCommand, TheFolderMayEndInASlash) {
+  TemporaryFolder folder;
+  const ProgramResult result =
+      run_program({"stability", "-o", folder.path("new") + "//", "--filter", "normals-by-weights", "--budget", "1s"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_FALSE(file_text(folder.path("new/stability.json")).empty());
+}
+
 TEST(StabilityCommand, AnInterruptedRunLeavesNoFile) {
   TemporaryFolder folder;
   ProgramOptions options;

@@ -355,17 +355,16 @@ double linear_rms(const Film& a, const Film& b) {
 }
 
 /// Rays of Whitted's method over those of a grid of equal error are a third at most, on the display-like scale and in
-/// linear light.
-void expect_a_third_of_a_grids_rays(bool filtered, double threshold, int width, int height) {
+/// linear light. `scene` makes the scene anew each time, with the settings of Whitted's method that count; the picture
+/// that errors are taken against has `converged` x `converged` samples a pixel.
+template <class MakeScene>
+void expect_a_third_of_a_grids_rays(const MakeScene& make_scene, int converged_grid) {
   const auto traced = [&](const Antialiasing& antialias) {
-    SceneDescription scene = builtin_scene("spheres-1980");
-    scene.image = {width, height};
-    std::get<CheckerPattern>(scene.materials.back().diffuse).filtered = filtered;
+    SceneDescription scene = make_scene();
     scene.render.antialias = antialias;
-    scene.render.adaptive.threshold = threshold;
     return rendered(std::move(scene), {ChannelGroup::color});
   };
-  const RenderResult converged = traced({Antialiasing::Method::grid, 24});
+  const RenderResult converged = traced({Antialiasing::Method::grid, converged_grid});
   const RenderResult adaptive = traced({Antialiasing::Method::whitted, 1});
   const auto rays = [](const RenderResult& result) { return static_cast<double>(result.statistics.total_rays()); };
   using Error = double (*)(const Film&, const Film&);
@@ -396,16 +395,38 @@ void expect_a_third_of_a_grids_rays(bool filtered, double threshold, int width, 
     testing::Test::RecordProperty(std::string(m.name) + "_rays_over_grid",
                                   std::to_string(rays(adaptive) / m.equal_rays));
   }
+  const double pixels = double(adaptive.film.window().width) * adaptive.film.window().height;
   testing::Test::RecordProperty("samples_per_pixel",
-                                std::to_string(double(adaptive.statistics.samples) / (width * height)));
+                                std::to_string(static_cast<double>(adaptive.statistics.samples) / pixels));
 }
 
-// Points of the checker for both: filtered, its edges cost a grid nothing, and what is compared is the filter.
-TEST(AdaptiveSampling, CostsAThirdOfAGridAtMostAtEqualError) { expect_a_third_of_a_grids_rays(false, 0.1, 160, 120); }
+// The scene as it is, at its own size and the default settings: a seventh.
+TEST(AdaptiveSampling, CostsAThirdOfAGridAtMostOnTheSceneAsItIs) {
+  const SceneDescription scene = builtin_scene("spheres-1980");
+  EXPECT_EQ(scene.render.adaptive.threshold, AdaptiveSampling().threshold);
+  EXPECT_EQ(scene.render.adaptive.levels, AdaptiveSampling().levels);
+  EXPECT_EQ(scene.render.adaptive.minimum_level, AdaptiveSampling().minimum_level);
+  // 11 is prime, so that none of the smaller grids' samples but middles are among the converged picture's; its own
+  // error is a third of what is compared, and adds to both alike.
+  expect_a_third_of_a_grids_rays([] { return builtin_scene("spheres-1980"); }, 11);
+}
 
-// The scene as it is. At the default threshold, where a grid of few samples is as good, it is some .35 to .4.
+SceneDescription small_spheres_1980(bool filtered, double threshold, int width, int height) {
+  SceneDescription scene = builtin_scene("spheres-1980");
+  scene.image = {width, height};
+  std::get<CheckerPattern>(scene.materials.back().diffuse).filtered = filtered;
+  scene.render.adaptive.threshold = threshold;
+  return scene;
+}
+
+// In small pictures more pixels lie on an edge, and more rays are due. Points of the checker for both: filtered, its
+// edges cost a grid nothing, and what is compared is the filter.
+TEST(AdaptiveSampling, CostsAThirdOfAGridAtMostAtEqualError) {
+  expect_a_third_of_a_grids_rays([] { return small_spheres_1980(false, 0.1, 160, 120); }, 24);
+}
+
 TEST(AdaptiveSampling, CostsAThirdOfAGridAtMostOnTheFilteredChecker) {
-  expect_a_third_of_a_grids_rays(true, 0.05, 320, 240);
+  expect_a_third_of_a_grids_rays([] { return small_spheres_1980(true, 0.05, 320, 240); }, 24);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/renderer/cut_pictures.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree {
@@ -172,23 +173,14 @@ int choose_samples(RenderSettings& render, int i) {
   return edge * edge;
 }
 
-/// Rays of the pixel and of those about it, whose samples on the common border are its own too.
-double rays_about(const Film& film, int x, int y) {
-  const PixelWindow& window = film.window();
-  double rays = 0;
-  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, window.height - 1); ++j)
-    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, window.width - 1); ++i)
-      rays += film.id_plane(ChannelGroup::ray_count)[pixel_index(film, i, j)];
-  return rays;
-}
-
 TEST(Cutoff, IsKeptPerSampleAndChannelOnRandomScenes) {
   RandomScenes scenes(20240607);
   std::uint64_t cut_branches = 0, cut_samples = 0, scenes_cut = 0;
-  const ChannelSet channels{ChannelGroup::color, ChannelGroup::truncation, ChannelGroup::ray_count};
+  const ChannelSet channels = cut_channels();
   for (int i = 0; i < 300; ++i) {
     SceneDescription scene = scenes.next();
     const int samples = choose_samples(scene.render, i);
+    const double cutoff = scene.render.cutoff;
     const RenderResult cut = rendered(deep_copy(scene), channels);
     SceneDescription whole = deep_copy(scene);
     whole.render.cutoff = 0;
@@ -196,26 +188,8 @@ TEST(Cutoff, IsKeptPerSampleAndChannelOnRandomScenes) {
     ASSERT_EQ(cut.statistics.samples, uncut.statistics.samples) << "scene " << i;
     cut_branches += cut.statistics.branches_cut;
     scenes_cut += cut.statistics.branches_cut > 0;
-    for (int y = 0; y < 12; ++y)
-      for (int x = 0; x < 12; ++x) {
-        const Rgb a = color_at(uncut.film, x, y), b = color_at(cut.film, x, y),
-                  t = color_at(cut.film, x, y, ChannelGroup::truncation);
-        const double rays = rays_about(uncut.film, x, y);
-        const float values[3][3] = {{a.r, b.r, t.r}, {a.g, b.g, t.g}, {a.b, b.b, t.b}};
-        bool any = false;
-        for (const auto& [all, kept, bound] : values) {
-          // Both sums add the same terms, save those cut, in float: each addition rounds the sum by half an ulp, and
-          // a ray makes at most two (its ambient share and its light or background), a sample two of its pixel's mean.
-          const double roundings = (2 * rays + 2 * samples + 2) * 0x1p-24, tolerance = roundings * std::max(all, kept);
-          const double lost = double(all) - kept;
-          ASSERT_GE(lost, -tolerance) << "scene " << i << " pixel " << x << "," << y;
-          ASSERT_LE(lost, bound + tolerance) << "scene " << i << " pixel " << x << "," << y;
-          // The truncation channel is such a sum itself; shares are differences that round too.
-          ASSERT_LE(bound, scene.render.cutoff * (1 + roundings)) << "scene " << i;
-          any |= bound > 0;
-        }
-        cut_samples += any;
-      }
+    expect_cut_within_its_bound(cut.film, uncut.film, cutoff, samples, "scene " + std::to_string(i), cut_samples);
+    if (testing::Test::HasFatalFailure()) return;
   }
   // The test tests something: over a hundred scenes lose branches to the cutoff.
   EXPECT_GT(scenes_cut, 100u);

@@ -6,6 +6,8 @@
 
 #include <random>
 
+#include "renderer/tracer_choice.h"
+#include "tests/renderer/same_picture.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree {
@@ -97,39 +99,6 @@ SceneDescription vertex_scene(int grid) {
   return scene;
 }
 
-void expect_the_same_picture_always(SceneDescription description, const std::string& what) {
-  const tbb::global_control more_threads(tbb::global_control::max_allowed_parallelism, 7);
-  const Scene scene = prepared(std::move(description));
-  RenderOptions options;
-  options.channels = all_channels();
-  options.threads = 1;
-  const RenderResult reference = render(scene, options);
-  ASSERT_TRUE(reference.complete);
-  for (const int threads : {1, 2, 3, 7})
-    for (const std::uint64_t seed : {0u, 1u, 99u, 2026u, 0xfedcba98u}) {
-      options.threads = threads;
-      options.tile_order_seed = seed;
-      const RenderResult result = render(scene, options);
-      EXPECT_EQ(differing_pixels(reference.film, result.film), 0u)
-          << what << " threads " << threads << " seed " << seed;
-      EXPECT_EQ(result.statistics.rays, reference.statistics.rays);
-      EXPECT_EQ(result.statistics.branches_cut, reference.statistics.branches_cut);
-      EXPECT_EQ(result.statistics.threads, threads);
-    }
-  const int w = scene.description.image.width, h = scene.description.image.height;
-  for (const PixelWindow& window :
-       {PixelWindow{0, 0, 1, 1}, PixelWindow{33, 17, 30, 30}, PixelWindow{31, 31, 2, 2},
-        PixelWindow{w - 1, h - 1, 1, 1}, PixelWindow{5, h - 4, w - 5, 3}, PixelWindow{32, 0, 32, 32}}) {
-    options.window = window;
-    options.threads = 3;
-    options.tile_order_seed = 7;
-    const RenderResult crop = render(scene, options);
-    EXPECT_EQ(differing_pixels(reference.film, crop.film), 0u)
-        << what << " crop " << window.width << "x" << window.height << "+" << window.x0 << "+" << window.y0;
-    EXPECT_EQ(crop.film.window().width, window.width);
-  }
-}
-
 TEST(Determinism, PicturesOfEveryFeatureAreBitIdentical) {
   expect_the_same_picture_always(busy_scene(), "busy");
   SceneDescription scene = busy_scene();
@@ -183,6 +152,32 @@ TEST(Determinism, PicturesOfRaysAimedAtVerticesAreBitIdentical) {
   expect_the_same_picture_always(vertex_scene(2), "vertices, grid:2");
 }
 
+/// What Embree is given in place of triangles, and its compact hierarchies: every kind that a scene may be given
+/// without asking for it.
+const std::vector<std::string>& repeatable_hierarchies() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> result;
+    for (const HierarchyCost& cost : hierarchy_costs())
+      if (cost.repeatable) result.push_back(cost.name);
+    return result;
+  }();
+  return names;
+}
+
+TEST(Determinism, PicturesOfEveryHierarchyAreBitIdentical) {
+  EXPECT_GE(repeatable_hierarchies().size(), 5u);
+  for (const std::string& hierarchy : repeatable_hierarchies()) {
+    PrepareOptions preparing;
+    preparing.hierarchy = hierarchy;
+    expect_the_same_picture_always(vertex_scene(1), "vertices, " + hierarchy, preparing);
+    if (hierarchy != "grids") continue;  // what is furthest from triangles, sampled adaptively too
+    SceneDescription scene = vertex_scene(1);
+    scene.render.antialias.method = Antialiasing::Method::whitted;
+    scene.render.adaptive = {0.02, 2, 1};
+    expect_the_same_picture_always(std::move(scene), "vertices, whitted, grids", preparing);
+  }
+}
+
 /// Adds things that samples may miss: specks, a wire, a disc seen nearly from its edge.
 SceneDescription with_small_objects(SceneDescription scene) {
   for (int i = 0; i < 200; ++i)
@@ -232,20 +227,23 @@ TEST(Determinism, PreparingWithOtherThreadCountsGivesTheSamePicture) {
   const tbb::global_control more_threads(tbb::global_control::max_allowed_parallelism, 7);
   RenderOptions options;
   options.channels = all_channels();
-  std::optional<RenderResult> reference;
-  for (const int threads : {1, 2, 3, 7}) {
-    SceneDescription description = busy_scene();
-    description.shapes.push_back(mesh_shape(globe_mesh(3, 120, 60), "dull", NormalSource::smooth));
-    description.shapes.back().transform = translation({0, 2, -6});
-    PrepareOptions preparing;
-    preparing.threads = threads;
-    tbb::task_arena arena(threads);
-    Scene scene = arena.execute([&] { return prepared(std::move(description), nullptr, preparing); });
-    RenderResult result = render(scene, options);
-    if (!reference)
-      reference.emplace(std::move(result));
-    else
-      EXPECT_EQ(differing_pixels(reference->film, result.film), 0u) << threads;
+  for (const std::string& hierarchy : repeatable_hierarchies()) {
+    std::optional<RenderResult> reference;
+    for (const int threads : {1, 2, 3, 7}) {
+      SceneDescription description = busy_scene();
+      description.shapes.push_back(mesh_shape(globe_mesh(3, 120, 60), "dull", NormalSource::smooth));
+      description.shapes.back().transform = translation({0, 2, -6});
+      PrepareOptions preparing;
+      preparing.threads = threads;
+      preparing.hierarchy = hierarchy;
+      tbb::task_arena arena(threads);
+      Scene scene = arena.execute([&] { return prepared(std::move(description), nullptr, preparing); });
+      RenderResult result = render(scene, options);
+      if (!reference)
+        reference.emplace(std::move(result));
+      else
+        EXPECT_EQ(differing_pixels(reference->film, result.film), 0u) << hierarchy << " threads " << threads;
+    }
   }
 }
 

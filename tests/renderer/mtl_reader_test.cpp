@@ -93,6 +93,20 @@ TEST(MtlReader, NumbersOutOfRangeBecomeTheNearestThatMeanSomething) {
   EXPECT_EQ(diffuse(one("Kd -1 .5 .5")), Rgb(0, .5f, .5f));
 }
 
+TEST(MtlReader, NumbersOutOfRangeAreCountedWithTheirFirstLine) {
+  Warnings warnings;
+  read_mtl(
+      "newmtl a\nKd -1 .5 .5\nKs 1 -1 -1\nNs .5\nNs 0\nNi 0\nNi -1.5\nd 7\nTr -.1\nd 1.5\n"
+      "newmtl b\nKd 0 2 1e9\nKs xyz 0 1 0\nNs 1\nNi .9\nd 1\nTr 0\n",
+      "a.mtl", warnings);
+  const auto find = [&](const std::string& part) { return test::found_warning(warnings, part); };
+  EXPECT_EQ(find("negative components"), "2 x2");
+  EXPECT_EQ(find("(Ns) below 1"), "4 x2");
+  EXPECT_EQ(find("(Ni) that are not positive"), "6 x2");
+  EXPECT_EQ(find("(d, Tr) outside 0 to 1"), "8 x3");
+  EXPECT_EQ(warnings.size(), 4u) << "the second material is in range";
+}
+
 TEST(MtlReader, NamesMayHoldBlanksAndLineEndsVary) {
   Warnings warnings;
   const auto materials =

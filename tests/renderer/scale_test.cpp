@@ -2,6 +2,7 @@
 // shadows where they belong.
 #include <gtest/gtest.h>
 
+#include "renderer/tracer_choice.h"
 #include "tests/renderer/test_scenes.h"
 
 namespace raytree {
@@ -31,11 +32,21 @@ SceneDescription from_above(int size, double scale, const Vec3d& at) {
   return dark_scene(size, camera);
 }
 
-TEST(Scale, FloorsAndObjectsShowNoAcneAndKeepTheirShadows) {
+/// A level lattice of cells, 20 wide to every side, as height fields are: what Embree may be given as quads or grids.
+std::shared_ptr<PolygonMesh> level_lattice() {
+  auto mesh = grid_mesh(64, 0.625, [](int, int) { return 0.0; });
+  for (Vec3f& p : mesh->positions) p = Vec3f(p.x, p.z, -p.y);
+  return mesh;
+}
+
+/// A sphere and a box stand on a floor and on nothing but it: every pixel of floor is in the light or in their shadow,
+/// and they themselves are lit by N.L. The floors: 0 a plane, 1 a disc, 2 two
+/// triangles, 3 a lattice.
+void expect_light_and_shadow(const std::vector<int>& floors, const std::string& hierarchy = "") {
   const int size = 24;
   const Vec3d to_sun = unit(Vec3d(0.6, 1, 0.3));
   over_scales_and_offsets([&](double scale, const Vec3d& at) {
-    for (const int floor : {0, 1, 2}) {  // plane, disc, mesh
+    for (const int floor : floors) {
       SceneDescription scene = from_above(size, scale, at);
       scene.materials = {material("floor", Rgb(1)), material("object", Rgb(0.5f))};
       scene.lights = {directional_light(-to_sun * 3.0)};
@@ -48,11 +59,19 @@ TEST(Scale, FloorsAndObjectsShowNoAcneAndKeepTheirShadows) {
             "floor"));
         scene.shapes.back().transform = scaling(Vec3d(scale)) * translation(at);
       }
+      if (floor == 3) {
+        scene.shapes.push_back(mesh_shape(level_lattice(), "floor"));
+        scene.shapes.back().transform = scaling(Vec3d(scale)) * translation(at);
+      }
       // A sphere and a box that stand on the floor; no pixel center falls on an edge.
       scene.shapes.push_back(shape(SphereShape{at + Vec3d(-1, 0.5, 0) * scale, 0.5 * scale}, "object"));
       scene.shapes.push_back(mesh_shape(box_mesh({0.5f, 0, -0.3f}, {1, 0.5f, 0.3f}), "object"));
       scene.shapes.back().transform = scaling(Vec3d(scale)) * translation(at);
-      const RenderResult result = rendered(std::move(scene));
+      PrepareOptions preparing;
+      preparing.hierarchy = hierarchy;
+      RenderOptions options;
+      options.channels = all_channels();
+      const RenderResult result = render(prepared(std::move(scene), nullptr, preparing), options);
       int lit = 0, shadowed = 0, acne = 0, unshadowed = 0;
       for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
@@ -99,6 +118,15 @@ TEST(Scale, FloorsAndObjectsShowNoAcneAndKeepTheirShadows) {
       EXPECT_GT(faces, 20);
     }
   });
+}
+
+TEST(Scale, FloorsAndObjectsShowNoAcneAndKeepTheirShadows) { expect_light_and_shadow({0, 1, 2}); }
+
+TEST(Scale, EveryHierarchyOfALatticeShowsNoAcneAndKeepsItsShadows) {
+  for (const HierarchyCost& cost : hierarchy_costs()) {
+    SCOPED_TRACE(cost.name);
+    expect_light_and_shadow({3}, cost.name);
+  }
 }
 
 TEST(Scale, InstancesStandInTheirShadowsOpaqueAndOfGlass) {

@@ -315,58 +315,73 @@ void for_each_property(const Json& rule, const std::string& path,
 // Each property's default is what the reader fills in: written out or left out, the scene is the same.
 TEST(SceneSchema, DefaultsAreThoseOfTheReader) {
   int defaults = 0;
-  const auto check = [&](const Json& properties, const std::function<Json(const Json&)>& document_of) {
-    for (const auto& [key, property] : properties.items()) {
-      if (!property.is_object() || !property.contains("default")) continue;
+  using DocumentOf = std::function<Json(const Json&)>;
+  const std::function<void(const Json&, const DocumentOf&)> check = [&](const Json& properties,
+                                                                        const DocumentOf& document_of) {
+    for (const auto& [name, property] : properties.items()) {
+      const std::string key = name;  // a lambda takes no structured binding
+      if (!property.is_object()) continue;
+      if (property.contains("properties"))
+        check(property.at("properties"), [&](const Json& given) { return document_of({{key, given}}); });
+      if (!property.contains("default")) continue;
+      SCOPED_TRACE(document_of({{key, property.at("default")}}).dump());
       ++defaults;
-      Json given;
-      given[key] = property["default"];
-      EXPECT_TRUE(is_valid(property, property["default"])) << key;
-      EXPECT_EQ(write_scene(read_scene(document_of(given).dump(), "a", "")),
+      EXPECT_TRUE(is_valid(property, property.at("default"))) << key;
+      EXPECT_EQ(write_scene(read_scene(document_of({{key, property.at("default")}}).dump(), "a", "")),
                 write_scene(read_scene(document_of(Json::object()).dump(), "b", "")))
           << key;
     }
   };
-  const Json& top = schema()["properties"];
+  // The scene with all that some shapes need beside them.
   const auto scene_with = [](const std::string& key, const Json& value) {
-    Json document{{"raytree", 1}};
-    document[key] = value;
+    Json document{{"raytree", 1},
+                  {"groups", {{"g", {{"shapes", {{"s", {{"type", "sphere"}}}}}}}}},
+                  {"shapes", {{"t", {{"type", "terrain"}}}}}};
+    if (value.is_object())
+      document[key].update(value);
+    else
+      document[key] = value;
     return document;
   };
-  check(top, [](const Json& given) {
-    Json document{{"raytree", 1}};
-    document.update(given);
-    return document;
-  });
-  for (const char* key : {"image", "render"})
-    check(top[key]["properties"], [&](const Json& given) { return scene_with(key, given); });
-  check(top["cameras"]["additionalProperties"]["properties"], [&](const Json& given) {
-    return scene_with("cameras", {{"x", given}});
-  });
-  check(top["materials"]["additionalProperties"]["properties"], [&](const Json& given) {
-    return scene_with("materials", {{"x", given}});
-  });
-  check(top["materials"]["additionalProperties"]["properties"]["highlight"]["properties"], [&](const Json& given) {
-    return scene_with("materials", {{"x", {{"highlight", given}}}});
-  });
-  const auto check_alternatives = [&](const Json& rule, const std::function<Json(const Json&)>& document_of) {
-    for (const Json& choice : rule["oneOf"])
-      if (choice.contains("title"))
-        check(choice["properties"], [&](Json given) {
-          given["type"] = choice["title"];
-          if (choice["title"] == "mesh") given["file"] = "a.ply";
-          return document_of(given);
-        });
-  };
-  check_alternatives(top["background"], [&](const Json& given) { return scene_with("background", given); });
-  for (const char* key : {"lights", "shapes"})
-    check_alternatives(top[key]["additionalProperties"], [&](const Json& given) {
+  const Json& top = schema().at("properties");
+  for (const auto& [name, property] : top.items()) {
+    const std::string key = name;
+    if (property.contains("default"))
+      check({{key, property}}, [&](const Json& given) {
+        return given.contains(key) ? scene_with(key, given.at(key)) : scene_with("raytree", 1);
+      });
+    else if (property.contains("properties"))
+      check(property.at("properties"), [&](const Json& given) { return scene_with(key, given); });
+  }
+  for (const char* key : {"cameras", "materials"})
+    check(top.at(key).at("additionalProperties").at("properties"), [&](const Json& given) {
       return scene_with(key, {{"x", given}});
     });
-  check_alternatives(schema()["$defs"]["pattern"], [&](const Json& given) {
+  const auto check_alternatives = [&](const Json& rule, const DocumentOf& document_of) {
+    for (const Json& choice : rule.at("oneOf")) {
+      if (!choice.contains("title")) continue;
+      const std::string type = choice.at("title");
+      check(choice.at("properties"), [&](Json given) {
+        given["type"] = type;
+        if (type == "mesh") given["file"] = "a.ply";
+        if (type == "patches") given["file"] = "a.bpt";
+        if (type == "instance" || type == "scatter") given["group"] = "g";
+        if (type == "scatter") given["terrain"] = "t";
+        return document_of(given);
+      });
+    }
+  };
+  check_alternatives(top.at("background"), [&](const Json& given) { return scene_with("background", given); });
+  check_alternatives(top.at("lights").at("additionalProperties"), [&](const Json& given) {
+    return scene_with("lights", {{"x", given}});
+  });
+  check_alternatives(schema().at("$defs").at("shape"), [&](const Json& given) {
+    return scene_with("shapes", {{"x", given}});
+  });
+  check_alternatives(schema().at("$defs").at("pattern"), [&](const Json& given) {
     return scene_with("materials", {{"x", {{"diffuse", given}}}});
   });
-  EXPECT_GT(defaults, 40);
+  EXPECT_GT(defaults, 120);
 }
 
 // docs/scene-format.md ends with the tables as the program prints them. RAYTREE_UPDATE_DOCS=1 writes them there.

@@ -5,92 +5,18 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 #include <string>
 
-#include "geometry/embree_intersector.h"
 #include "geometry/instance_transform.h"
-#include "geometry/ray_batch.h"
-#include "geometry/surface.h"
+#include "tests/renderer/false_hits.h"
 
 namespace raytree {
 namespace {
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  Vec3d direction() {
-    std::normal_distribution<double> gauss;
-    const Vec3d v(gauss(engine_), gauss(engine_), gauss(engine_));
-    return unit(v);
-  }
-  Vec3d in_cube(double reach) { return {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)}; }
-  /// To `side`, at heights from upright down to 1e-7 over the surface.
-  Vec3f leaving(const Vec3f& side) {
-    const Vec3d n = unit(Vec3d(side));
-    const Vec3d d = direction();
-    const Vec3d along = unit(d - n * d.dot(n));
-    const double height = uniform(0, 1) < 0.5 ? uniform(0, 1) : std::pow(10.0, uniform(-7, 0));
-    return Vec3f(unit(along * std::sqrt(1 - height * height) + n * height));
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-/// A shape's size, and the largest coordinate of its place.
-struct Setting {
-  double size, place;
-};
-
-const Setting kSettings[] = {{1e-4, 0},  {1e-4, 1e-3}, {1e-4, 1}, {1e-2, 0}, {1e-2, 10}, {1, 0},
-                             {1, 1},     {1, 1e3},     {1, 1e5},  {30, 1e4}, {1e3, 0},   {1e3, 1e3},
-                             {1e3, 1e6}, {1e5, 1e5},   {1e6, 0},  {1e6, 1e6}};
-
-struct Count {
-  int left = 0;  ///< rays that left a surface
-  int false_hits = 0;
-};
-
-/// Shoots rays at primitive after primitive, spawns from the hit to both sides, counts what meets its own primitive.
-/// `aim(i)` yields a point of primitive i, `own(hit, point, direction)` says whether a spawned ray's hit is a false
-/// one.
-template <class Aim, class Own>
-Count count_false_hits(const ShapeSet& shapes, int primitives, GeometryId geometry, double size, Random& random,
-                       Aim&& aim, Own&& own) {
-  const EmbreeIntersector intersector(shapes, EmbreeOptions{});
-  Count count;
-  RayBatch rays(64);
-  HitBatch hits(64);
-  for (int i = 0; i < primitives; ++i) {
-    const Vec3d target = aim(i);
-    const Vec3f origin(target + random.direction() * size * std::pow(10.0, random.uniform(-1, 1.5)));
-    if (Vec3d(origin) == target) continue;
-    const Vec3f direction(unit(target - Vec3d(origin)));
-    const Hit hit = intersector.intersect_one(origin, direction, kInfinity);
-    if (hit.geometry != geometry || hit.primitive != static_cast<std::uint32_t>(i)) continue;
-    const SurfacePoint point = surface_at(shapes, origin, direction, hit, false);
-    for (const float side : {1.0f, -1.0f}) {
-      const Vec3f normal = point.geometric_normal * side;
-      rays.size = 0;
-      for (int k = 0; k < 8; ++k) rays.push(offset_origin(point, normal), random.leaving(normal), kInfinity);
-      for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
-        intersector.intersect(rays, coherence, hits);
-        for (int k = 0; k < 8; ++k) {
-          ++count.left;
-          if (hits.geometry[k] == geometry && hits.primitive[k] == hit.primitive)
-            count.false_hits +=
-                own(hits[static_cast<std::size_t>(k)], point, rays.direction(static_cast<std::size_t>(k)), side);
-        }
-      }
-    }
-  }
-  return count;
-}
+using test::count_false_hits, test::FalseHits, test::kSettings, test::RandomRays, test::Setting;
 
 /// Triangles with edges of about `size`, of the given least height over their longest edge.
-Count triangle_false_hits(const Setting& setting, double aspect, bool level, Random& random) {
+FalseHits triangle_false_hits(const Setting& setting, double aspect, bool level, RandomRays& random) {
   const int n = 1500;
   ShapeSet shapes;
   shapes.meshes.resize(1);
@@ -122,10 +48,10 @@ Count triangle_false_hits(const Setting& setting, double aspect, bool level, Ran
 }
 
 TEST(SelfIntersection, NoRayHitsTheTriangleItLeft) {
-  Random random(1);
+  RandomRays random(1);
   for (const Setting& setting : kSettings)
     for (const bool level : {false, true}) {
-      const Count count = triangle_false_hits(setting, 0.5, level, random);
+      const FalseHits count = triangle_false_hits(setting, 0.5, level, random);
       EXPECT_EQ(count.false_hits, 0) << "size " << setting.size << " place " << setting.place << " of " << count.left;
       // Where the size is a few ulp of the place, most aims miss.
       if (setting.size > 1e-4 * setting.place) {
@@ -135,11 +61,11 @@ TEST(SelfIntersection, NoRayHitsTheTriangleItLeft) {
 }
 
 TEST(SelfIntersection, NoRayHitsTheSliverItLeft) {
-  Random random(2);
+  RandomRays random(2);
   for (const double aspect : {1e-1, 1e-2, 1e-3})
     for (const Setting& setting : {Setting{1, 0}, Setting{1, 1}, Setting{1e3, 1e3}, Setting{1e-4, 0}})
       for (const bool level : {false, true}) {
-        const Count count = triangle_false_hits(setting, aspect, level, random);
+        const FalseHits count = triangle_false_hits(setting, aspect, level, random);
         EXPECT_EQ(count.false_hits, 0) << "aspect " << aspect << " size " << setting.size << " place " << setting.place
                                        << " of " << count.left << (level ? " level" : "");
         EXPECT_GT(count.left, 5000);
@@ -147,7 +73,7 @@ TEST(SelfIntersection, NoRayHitsTheSliverItLeft) {
 }
 
 TEST(SelfIntersection, NoRayHitsTheSphereItLeftButForItsFarSide) {
-  Random random(3);
+  RandomRays random(3);
   for (const Setting& setting : kSettings) {
     if (setting.size < 1e-5 * setting.place) continue;  // not a sphere any more: its radius is a few ulp
     const int n = 1500;
@@ -162,7 +88,7 @@ TEST(SelfIntersection, NoRayHitsTheSphereItLeftButForItsFarSide) {
       const Imath::V4f& s = shapes.spheres.center_radius[i];
       return Vec3d(s.x, s.y, s.z);
     };
-    const Count count = count_false_hits(
+    const FalseHits count = count_false_hits(
         shapes, n, kSphereGeometry, setting.size, random,
         [&](int i) {
           const auto k = static_cast<std::size_t>(i);
@@ -180,7 +106,7 @@ TEST(SelfIntersection, NoRayHitsTheSphereItLeftButForItsFarSide) {
 }
 
 TEST(SelfIntersection, NoRayHitsTheConeItLeft) {
-  Random random(6);
+  RandomRays random(6);
   for (const Setting& setting : kSettings) {
     if (setting.size < 1e-5 * setting.place) continue;
     const int n = 1500;
@@ -200,7 +126,7 @@ TEST(SelfIntersection, NoRayHitsTheConeItLeft) {
       on_surface.push_back(frame.base + frame.axis * height +
                            unit(d - frame.axis * d.dot(frame.axis)) * (frame.base_radius + frame.slope * height));
     }
-    const Count count = count_false_hits(
+    const FalseHits count = count_false_hits(
         shapes, n, kConeGeometry, setting.size, random, [&](int i) { return on_surface[static_cast<std::size_t>(i)]; },
         [&](const Hit& hit, const SurfacePoint& point, const Vec3f& direction, float side) {
           // No ray that leaves the outside comes back; from inside, a ball of the smaller radius rolls freely along the
@@ -219,7 +145,7 @@ TEST(SelfIntersection, NoRayHitsTheConeItLeft) {
 }
 
 TEST(SelfIntersection, NoRayHitsTheDiscItLeft) {
-  Random random(4);
+  RandomRays random(4);
   for (const Setting& setting : kSettings)
     for (const bool level : {false, true}) {
       if (setting.size < 1e-5 * setting.place) continue;
@@ -236,7 +162,7 @@ TEST(SelfIntersection, NoRayHitsTheDiscItLeft) {
         const Vec3d nd = unit(Vec3d(normal)), d = random.direction();
         inside.push_back(Vec3d(c) + unit(d - nd * d.dot(nd)) * (0.99 * radius * std::sqrt(random.uniform(0, 1))));
       }
-      const Count count = count_false_hits(
+      const FalseHits count = count_false_hits(
           shapes, n, kDiscGeometry, setting.size, random, [&](int i) { return inside[static_cast<std::size_t>(i)]; },
           [](const Hit&, const SurfacePoint&, const Vec3f&, float) { return true; });
       EXPECT_EQ(count.false_hits, 0) << "size " << setting.size << " place " << setting.place << " of " << count.left;
@@ -247,9 +173,9 @@ TEST(SelfIntersection, NoRayHitsTheDiscItLeft) {
 }
 
 TEST(SelfIntersection, NoRayHitsThePlaneItLeft) {
-  Random random(5);
+  RandomRays random(5);
   for (const Setting& setting : kSettings) {
-    Count count;
+    FalseHits count;
     for (int i = 0; i < 200; ++i) {
       ShapeSet shapes;
       shapes.planes.push_back(
@@ -257,7 +183,7 @@ TEST(SelfIntersection, NoRayHitsThePlaneItLeft) {
       const Vec3d normal = shapes.planes[0].normal;
       Vec3d target = shapes.planes[0].point + random.in_cube(setting.size);
       target -= normal * (target - shapes.planes[0].point).dot(normal);
-      const Count one = count_false_hits(
+      const FalseHits one = count_false_hits(
           shapes, 1, kPlaneGeometry, setting.size, random, [&](int) { return target; },
           [](const Hit&, const SurfacePoint&, const Vec3f&, float) { return true; });
       count.left += one.left;
@@ -270,7 +196,7 @@ TEST(SelfIntersection, NoRayHitsThePlaneItLeft) {
 /// Instances of triangles, spheres or discs: each group one primitive, each instance a transform that stretches,
 /// shears and mirrors it and takes it to a place.
 enum class Primitive { triangle, sliver, sphere, disc };
-Count instance_false_hits(const Setting& setting, Primitive primitive, bool level, Random& random) {
+FalseHits instance_false_hits(const Setting& setting, Primitive primitive, bool level, RandomRays& random) {
   const int groups = 40, uses = 600;
   ShapeSet shapes;
   shapes.groups.resize(groups);
@@ -348,7 +274,7 @@ Count instance_false_hits(const Setting& setting, Primitive primitive, bool leve
     }
   }
   const EmbreeIntersector intersector(shapes, EmbreeOptions{});
-  Count count;
+  FalseHits count;
   RayBatch rays(64);
   HitBatch hits(64);
   for (int i = 0; i < uses; ++i) {
@@ -383,12 +309,12 @@ Count instance_false_hits(const Setting& setting, Primitive primitive, bool leve
 }
 
 TEST(SelfIntersection, NoRayHitsTheInstanceItLeft) {
-  Random random(8);
+  RandomRays random(8);
   for (const Primitive primitive : {Primitive::triangle, Primitive::sliver, Primitive::sphere, Primitive::disc})
     for (const Setting& setting : kSettings) {
       if (setting.size < 1e-4 * setting.place) continue;  // a few ulp of its place
       for (const bool level : {false, true}) {
-        const Count count = instance_false_hits(setting, primitive, level, random);
+        const FalseHits count = instance_false_hits(setting, primitive, level, random);
         EXPECT_EQ(count.false_hits, 0) << "primitive " << static_cast<int>(primitive) << " size " << setting.size
                                        << " place " << setting.place << " of " << count.left << (level ? " level" : "");
         EXPECT_GT(count.left, 3000) << "primitive " << static_cast<int>(primitive) << " size " << setting.size
@@ -424,7 +350,7 @@ TEST(SelfIntersection, ClearanceOfInstancesIsOfTheSizeOfTheirErrors) {
 
 TEST(SelfIntersection, RaysAlongASharedEdgeDoNotHitTheNeighborOfAFlatMesh) {
   // Two triangles of one flat quad, tilted: what leaves one close to the diagonal must not meet the other either.
-  Random random(6);
+  RandomRays random(6);
   for (const Setting& setting : {Setting{1, 0}, Setting{1, 10}, Setting{1e3, 1e3}, Setting{1e-3, 1}}) {
     int false_hits = 0, left = 0;
     for (int i = 0; i < 300; ++i) {
@@ -461,7 +387,7 @@ TEST(SelfIntersection, RaysAlongASharedEdgeDoNotHitTheNeighborOfAFlatMesh) {
 TEST(SelfIntersection, NearbySurfacesAreStillFound) {
   // Concentric spheres with a gap of 1e-4 of the radius (a fixed offset of 9e-5 of it fails): a ray that enters the
   // outer one meets the inner one next; and sheets as close as 1e-4 of their size.
-  Random random(7);
+  RandomRays random(7);
   for (const double radius : {1e-4, 1.0, 1e6}) {
     ShapeSet shapes;
     const auto r = static_cast<float>(radius);
