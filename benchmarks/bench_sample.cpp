@@ -11,6 +11,9 @@ namespace {
 /// Rays of each batch where all of them together are fewer than one batch: a packet.
 constexpr std::size_t kFewOfBatch = 8;
 
+/// Batches that a few thousand rays are taken from.
+constexpr std::size_t kPartsOfPicture = 16;
+
 /// Where `most` rays of a batch begin: at a packet, not at the same one of each batch.
 std::size_t first_of_part(std::size_t k, std::size_t size, std::size_t most) {
   if (size <= most) return 0;
@@ -67,6 +70,10 @@ BenchRays fitting_part(const BenchRays& kind, const RayBudget& budget,
   double rays = budget.seconds / ((budget.repetitions + 1) * round / static_cast<double>(trial.rays.size()));
   rays = std::exp2(std::floor(std::log2(std::max(rays, 16.0))));
   if (rays < double(kBenchmarkBatch)) return few(static_cast<std::size_t>(rays));
+  // A batch or two of the naive tracer's are a corner of the picture, too.
+  const std::size_t parts = std::min(kPartsOfPicture, kind.rays.batches.size());
+  if (budget.naive && rays < static_cast<double>(parts * kBenchmarkBatch))
+    return part_of(kind, parts, static_cast<std::size_t>(rays) / parts / kFewOfBatch * kFewOfBatch);
   return part_of(kind, static_cast<std::size_t>(std::min(rays, 1e9)) / kBenchmarkBatch, kBenchmarkBatch);
 }
 

@@ -89,6 +89,44 @@ SceneDescription scattered_triangles(int count) {
   return scene;
 }
 
+SceneDescription dented_ball(std::int64_t triangles) {
+  const auto cells = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 12)));
+  const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  auto mesh = std::make_shared<PolygonMesh>();
+  for (int side = 0; side < 6; ++side) {
+    const double sign = side < 3 ? 1 : -1;
+    const Vec3d &out = axes[side % 3], &right = axes[(side + 1) % 3], &up = axes[(side + 2) % 3];
+    const auto first = static_cast<std::uint32_t>(mesh->positions.size());
+    for (std::uint32_t j = 0; j <= cells; ++j)
+      for (std::uint32_t i = 0; i <= cells; ++i) {
+        const Vec3d point = (out + right * (2.0 * i / cells - 1) + up * (2.0 * j / cells - 1)) * sign;
+        const Vec3d at = point / point.length();
+        const double dents = std::sin(7 * at.x) * std::sin(6 * at.y + 1) * std::sin(8 * at.z + 2);
+        mesh->positions.push_back(Vec3f(at * (1 + 0.1 * dents)));
+      }
+    for (std::uint32_t j = 0; j < cells; ++j)
+      for (std::uint32_t i = 0; i < cells; ++i) {
+        const std::uint32_t corner = first + j * (cells + 1) + i, above = corner + cells + 1;
+        // Outward on either side of the cube: the sign turns a side's two directions and its normal alike.
+        const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+          mesh->corners.push_back(a);
+          mesh->corners.push_back(sign > 0 ? b : c);
+          mesh->corners.push_back(sign > 0 ? c : b);
+        };
+        add(corner, corner + 1, above + 1);
+        add(corner, above + 1, above);
+      }
+  }
+  mesh->face_sizes.assign(mesh->corners.size() / 3, 3);
+  SceneDescription scene = mesh_scene(mesh, "ball");
+  scene.name = fmt::format("dented ball of {} triangles", mesh->face_sizes.size());
+  std::erase_if(scene.shapes, [](const ShapeDescription& shape) { return shape.name != "object"; });
+  scene.image = {800, 600};
+  CameraDescription& camera = scene.cameras[0];
+  camera.position = {0, 0, 3.5}, camera.target = {0, 0, 0}, camera.field_of_view = 50;
+  return scene;
+}
+
 SceneDescription instances_scene(int edge) {
   SceneDescription scene;
   scene.name = "instances";

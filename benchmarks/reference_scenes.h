@@ -24,11 +24,15 @@ inline constexpr const char* kTerrainSceneName = "terrain";                   //
 inline constexpr const char* kTerrainCountPath = "shapes.terrain.triangles";  ///< as `--set` takes it
 
 /// The built-in terrain with so many triangles and without its lake, from above, so that it fills the picture;
-/// 1280x960.
+/// 800x600.
 SceneDescription bare_terrain(std::int64_t triangles);
 
 /// So many small triangles that share no corner, turned and placed at random in a cube; 1280x960.
 SceneDescription scattered_triangles(int count);
+
+/// A ball with dents of about so many triangles, rows of cells on the six sides of a cube blown up, before a background
+/// that most eye rays meet: rays that take little time; 800x600.
+SceneDescription dented_ball(std::int64_t triangles);
 
 /// edge^2 instances of a terrain of a million triangles, turned and scaled each in its own way, side by side before the
 /// camera; 1280x960 without anti-aliasing.

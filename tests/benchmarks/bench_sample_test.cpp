@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <chrono>
 #include <set>
+#include <thread>
+#include <utility>
 
 #include "benchmarks/reference_scenes.h"
 
@@ -73,6 +75,30 @@ TEST(BenchSample, FewBatchesAreOfAllColumns) {
     const std::array<double, kBands> share = columns_of(few.rays, scene);
     for (std::size_t band = 0; band < kBands; band += 2) EXPECT_GT(share[band] + share[band + 1], 0) << width;
   }
+}
+
+// The naive tracer gets a thousand rays of sixteen batches rather than one batch, which would be a corner of the
+// picture, and without a budget a few of many.
+TEST(BenchSample, TheNaiveTracersRaysAreOfManyBatches) {
+  BenchRays kind;
+  for (int i = 0; i < 40 * static_cast<int>(kBenchmarkBatch); ++i)
+    add_ray(kind.rays, Vec3f(static_cast<float>(i), 0, 0), Vec3f(0, 0, 1), 1);
+  const auto batches = [&](const BenchRays& part) {
+    std::set<std::size_t> from;
+    for (const RayBatch& batch : part.rays.batches) {
+      EXPECT_GT(batch.size, 0u);
+      from.insert(static_cast<std::size_t>(batch.origin(0).x) / kBenchmarkBatch);
+    }
+    return from.size();
+  };
+  // 16 rays in 2 ms: 1600 in the time given, or fewer on a busy machine.
+  const auto ask = [](const BenchRays&) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); };
+  const BenchRays part = fitting_part(kind, {0.4, 1, true}, ask);
+  EXPECT_LE(part.rays.size(), 2048u);
+  EXPECT_GE(batches(part), std::min<std::size_t>(16, part.rays.size() / 8));
+  const BenchRays few = fitting_part(kind, {0, 1, true}, ask);
+  EXPECT_EQ(few.rays.size(), kNaiveRays);
+  EXPECT_EQ(batches(few), kNaiveRays / 8);
 }
 
 // Rays and the planes that end them stay side by side.
