@@ -31,7 +31,9 @@ class Random {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   Vec3d in_ball() {
     for (;;) {
-      const Vec3d v(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      // One draw a statement: the order of arguments is the compiler's.
+      const double z = uniform(-1, 1), y = uniform(-1, 1), x = uniform(-1, 1);
+      const Vec3d v(x, y, z);
       if (v.dot(v) <= 1) return v;
     }
   }
@@ -93,9 +95,9 @@ Skeleton broadleaf(const TreeParameters& parameters) {
   const double height = parameters.height;
   Skeleton skeleton;
   Random random(parameters.seed, 1);
-  skeleton.branches.push_back(grown(kBroadleafLevels[0], {0, 0, 0},
-                                    unit(Vec3d(random.uniform(-0.08, 0.08), 1, random.uniform(-0.08, 0.08))),
-                                    0.82 * height, 0.026 * height, 0.006 * height, {0, 0.1, 0}, 0.07, random));
+  const double lean_z = random.uniform(-0.08, 0.08), lean_x = random.uniform(-0.08, 0.08);
+  skeleton.branches.push_back(grown(kBroadleafLevels[0], {0, 0, 0}, unit(Vec3d(lean_x, 1, lean_z)), 0.82 * height,
+                                    0.026 * height, 0.006 * height, {0, 0.1, 0}, 0.07, random));
   // Lengths over the parent's, angles off it, and where along it the first one stands.
   constexpr double kLength[] = {0, 0.52, 0.5, 0.42}, kAngle[] = {0, 0.95, 0.75, 0.8}, kFirst[] = {0, 0.34, 0.3, 0.25};
   std::size_t first = 0;
@@ -270,8 +272,8 @@ TriangleMesh make_tree_leaves(const TreeParameters& parameters) {
       const Vec3d up(0, 1, 0), sideways = unit(along.cross(up) + random.in_ball() * 1e-6);
       const double side = i % 2 == 0 ? 1 : -1;
       const double opening = random.uniform(0.5, 1.1);
-      const Vec3d way = unit(along * std::cos(opening) + sideways * (side * std::sin(opening)) +
-                             Vec3d(0, random.uniform(-0.35, 0.1), 0) + random.in_ball() * 0.15);
+      const Vec3d waver = random.in_ball() * 0.15, droop(0, random.uniform(-0.35, 0.1), 0);
+      const Vec3d way = unit(along * std::cos(opening) + sideways * (side * std::sin(opening)) + droop + waver);
       const Vec3d blade = unit(way.cross(unit(up + random.in_ball() * 0.6)));
       const double length = parameters.leaf_size * random.uniform(0.7, 1.2) * (1.15 - 0.6 * share);
       add_leaf(stem, way, blade, length, 0.38 * length, outward_from(stem), mesh);

@@ -25,9 +25,11 @@ constexpr int kWidth = 64, kHeight = 48;
 /// over an edge. So nearly all pixels agree closely, and no number is asked of the rest.
 constexpr double kTolerance = 2e-3, kShare = 0.999;
 
-void expect_reference(SceneDescription scene, const std::string& name) {
+constexpr Antialiasing kFourSamples{Antialiasing::Method::grid, 2}, kAdaptive{Antialiasing::Method::whitted, 1};
+
+void expect_reference(SceneDescription scene, const std::string& name, const Antialiasing& antialias = kFourSamples) {
   scene.image = {kWidth, kHeight};
-  scene.render.antialias = {Antialiasing::Method::grid, 2};
+  scene.render.antialias = antialias;
   RenderResult result = rendered(std::move(scene), {ChannelGroup::color});
   EXPECT_EQ(result.statistics.not_finite_samples, 0u);
   expect_finite(result.film);
@@ -75,6 +77,18 @@ TEST(ReferenceImage, Terrain) {
     if (auto* terrain = std::get_if<TerrainShape>(&s.kind)) terrain->triangles = 20000;
   expect_reference(std::move(scene), "terrain");
 }
+
+// Whitted's adaptive samples, at default settings.
+
+TEST(ReferenceImage, WhittedsSpheresSampledAdaptively) {
+  expect_reference(builtin_scene("spheres-1980"), "spheres-1980-adaptive", kAdaptive);
+}
+
+TEST(ReferenceImage, GlassSampledAdaptively) { expect_reference(builtin_scene("glass"), "glass", kAdaptive); }
+
+TEST(ReferenceImage, RoughSurfacesSampledAdaptively) { expect_reference(builtin_scene("rough"), "rough", kAdaptive); }
+
+TEST(ReferenceImage, ForestSampledAdaptively) { expect_reference(builtin_scene("forest"), "forest", kAdaptive); }
 
 }  // namespace
 }  // namespace raytree

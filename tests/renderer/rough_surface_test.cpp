@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "benchmarks/samples/rough_mirror.h"
 #include "geometry/angle.h"
@@ -231,6 +232,21 @@ TEST(RoughSurface, ASampleIsKeyedByItsPlace) {
     differing += i > 0 && !(color_at(grid.film, i % 40, i / 40) == color_at(grid.film, (i - 1) % 40, (i - 1) / 40));
   }
   EXPECT_GT(differing, 1500) << "neighbours have points of their own";
+}
+
+// And by the branches taken since: no two ways down a tree, nor two trees a 2^-16 of a pixel apart, share their points.
+TEST(RoughSurface, EveryWayDownEveryTreeHasAKeyOfItsOwn) {
+  std::set<std::uint32_t> keys;
+  std::size_t ways = 0;
+  for (const Vec2f& place : {Vec2f(0, 0), Vec2f(0x1p-16f, 0), Vec2f(0, 0x1p-16f), Vec2f(1, 0), Vec2f(0, 1)})
+    for (int depth = 0; depth <= 8; ++depth)
+      for (int branches = 0; branches < 1 << depth; ++branches) {
+        TreePath path = TreePath::of_eye(place);
+        for (int level = 0; level < depth; ++level) path = path.child((branches >> level & 1) != 0);
+        keys.insert(path.key);
+        ++ways;
+      }
+  EXPECT_EQ(keys.size(), ways);
 }
 
 TEST(RoughSurface, ScenesSayWhetherTheyHaveAny) {
