@@ -86,12 +86,13 @@ TEST(Tree, IsTheSameOnEveryCallAndAnotherForAnotherSeed) {
 // Scenes show the same trees whatever the compiler: draws in one expression would come in the order of its choice, and
 // move these middles by hundredths of the height.
 TEST(Tree, IsTheSameWithEveryCompiler) {
-  struct Case {
+  struct GrownTree {
     TreeForm form;
     Vec3d wood, leaves;  ///< means of the vertices, found with g++ 12 and clang 14
   };
-  for (const Case& c : {Case{TreeForm::broadleaf, {0.528398, 8.023630, 0.366751}, {0.415431, 8.070475, 0.618465}},
-                        Case{TreeForm::conifer, {-0.022230, 5.712110, 0.033224}, {-0.008472, 4.485901, 0.049523}}}) {
+  for (const GrownTree& c :
+       {GrownTree{TreeForm::broadleaf, {0.528398, 8.023630, 0.366751}, {0.415431, 8.070475, 0.618465}},
+        GrownTree{TreeForm::conifer, {-0.022230, 5.712110, 0.033224}, {-0.008472, 4.485901, 0.049523}}}) {
     const auto expect_middle = [](const TriangleMesh& mesh, const Vec3d& expected) {
       Vec3d middle(0, 0, 0);
       for (const Vec3f& p : mesh.positions) middle += Vec3d(p) / static_cast<double>(mesh.positions.size());
