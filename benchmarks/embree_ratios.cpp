@@ -6,6 +6,7 @@
 
 #include "benchmarks/bench_run.h"
 #include "benchmarks/reference_scenes.h"
+#include "benchmarks/row_bounds.h"
 #include "benchmarks/rows.h"
 #include "geometry/embree_bench_scene.h"
 
@@ -13,10 +14,6 @@ namespace raytree::benchmarks {
 namespace {
 
 constexpr int kRepetitions = 9;
-
-/// What a ratio differs by between machines for no reason that is known: `raytree bench terrain --isa avx2` in place of
-/// `--isa avx512`, on one machine, moves three of four ratios by no more.
-constexpr double kBetweenMachines = 0.08;
 
 /// From .. to, as it was known; with what its digits leave open on either side. 0, 0: nothing was known.
 struct KnownRatio {

@@ -6,7 +6,6 @@
 #include "benchmarks/naive.h"
 #include "benchmarks/outline_difference.h"
 #include "benchmarks/row_bounds.h"
-#include "benchmarks/significance.h"
 #include "renderer/scene_description.h"
 #include "renderer/spd_counts.h"
 
@@ -38,7 +37,7 @@ Figure floor_line(const char* what) {
 /// The intervals are known ratios, which embree_ratios.cpp lists with the rays they are of.
 Figure ratios_line(const char* what) {
   Figure figure = line("ratios", what);
-  figure.kind = BoundKind::within, figure.bound = figure.upper = kAnyInterval, figure.noise = kBetweenProcesses;
+  figure.kind = BoundKind::within, figure.bound = figure.upper = kAnyInterval, figure.noise = kBetweenMachines;
   return figure;
 }
 
@@ -89,6 +88,8 @@ std::vector<Figure> made_lines() {
       ratios_line("mirror, * / *, *"),
       ratios_line("refracted, * / *, *"),
       ratios_line("bounce, * / *, *"),
+      ratios_line("edge, * / *, *"),
+      line("ratios", "primary, a ray of * more than of *, *", "ns"),
       at_most(kMostInstancesGibibytes, "instances",
               "peak memory of preparing * instances of a mesh of a million triangles, *", "GiB"),
       at_most(kMostOverBare, "instances", "the seam / bare Embree calls, * primary rays at 10,000 instances, *"),

@@ -25,6 +25,7 @@ constexpr double kAloneShare = 0.65;    ///< of the budget: until then knobs are
 constexpr double kCrossedShare = 0.75;  ///< ...until then several; then times are taken again
 constexpr double kProbeShare = 0.08;    ///< of the budget that small pictures may take
 constexpr double kPointShare = 0.1;     ///< of the budget that one render may take
+constexpr double kProbeSlack = 8;       ///< a small picture may take as many times its share of the pixels
 constexpr int kEstimateEdge = 6;        ///< the naive tracer's time is guessed from a picture of 1/6 of the edges
 constexpr double kSecondsBetweenSaves = 15;
 
@@ -193,7 +194,7 @@ class ChartMeasurement {
       if (!seen.insert(text_hash(render_key(scene))).second) continue;
       // The naive tracer's rays are as many, and take far longer.
       if (small_pictures_pay_ && scene.prepare.tracer != Tracer::spheres)
-        setting.expected_rays = expected_rays_of(scene);
+        setting.expected_rays = expected_rays_of(scene, most_probe_seconds());
       settings.push_back(std::move(setting));
     }
     sort_cheap_first(settings);
@@ -203,13 +204,25 @@ class ChartMeasurement {
   /// Seconds that a small picture of the scene's own settings takes: where preparing is most of a render, as long.
   double probe_own_settings() {
     const Clock::time_point begin = Clock::now();
-    own_rays_ = expected_rays_of(options_.make({}));
-    return seconds_since(begin);
+    own_rays_ = expected_rays_of(options_.make({}), std::numeric_limits<double>::infinity());
+    own_probe_seconds_ = seconds_since(begin);
+    return own_probe_seconds_;
   }
 
-  /// 0: stopped.
-  double expected_rays_of(const ChartScene& scene) const {
-    return expected_rays(scene, result_.data.width, result_.data.height, options_.threads, options_.stop).value_or(0);
+  /// What a small picture may take of a setting that the budget holds: beyond preparing the scene, its share of the
+  /// pixels of a whole one, and some times more. Trees that double at every level have no end otherwise.
+  double most_probe_seconds() const {
+    const double share = std::pow(std::min(1.0, static_cast<double>(kProbeWidth) / result_.data.width), 2);
+    return own_probe_seconds_ + kProbeSlack * share * kPointShare * options_.budget_seconds;
+  }
+
+  /// 0: stopped; infinite: the small picture took longer than `most_seconds`.
+  double expected_rays_of(const ChartScene& scene, double most_seconds) const {
+    const TimeLimit limit(options_.stop, most_seconds);
+    const std::optional<double> rays =
+        expected_rays(scene, result_.data.width, result_.data.height, options_.threads, &limit.stop());
+    if (rays) return *rays;
+    return stopped() ? 0 : std::numeric_limits<double>::infinity();
   }
 
   bool more_time_needed() const {
@@ -243,6 +256,11 @@ class ChartMeasurement {
                             : std::max(0.5, std::min(kPointShare * options_.budget_seconds, seconds_left()));
     if (setting.part != SweepPart::defaults) {
       const double estimate = estimated_seconds(scene, setting);
+      if (std::isinf(estimate)) {
+        leave_out(setting, fmt::format("a small picture of it alone took over {}: more than this budget's {} a render",
+                                       short_seconds(most_probe_seconds()), short_seconds(most)));
+        return;
+      }
       if (estimate > most) {
         leave_out(setting, fmt::format("would take about {}, more than this budget's {} a render",
                                        short_seconds(estimate), short_seconds(most)));
@@ -287,7 +305,8 @@ class ChartMeasurement {
     const auto own = std::find_if(result_.data.points.begin(), result_.data.points.end(),
                                   [](const ChartPoint& p) { return p.setting.part == SweepPart::defaults; });
     if (own == result_.data.points.end() || !small_pictures_pay_ || own_rays_ == 0) return 0;
-    const double rays = setting.expected_rays > 0 ? setting.expected_rays : expected_rays_of(scene);
+    const double rays =
+        setting.expected_rays > 0 ? setting.expected_rays : expected_rays_of(scene, most_probe_seconds());
     return own->wall().median * rays / own_rays_;
   }
 
@@ -362,6 +381,7 @@ class ChartMeasurement {
   ChartPicture reference_;
   std::set<std::string> keys_;
   double own_rays_ = 0;  ///< of the scene's own settings, by a small picture; 0: stopped
+  double own_probe_seconds_ = 0;
   bool small_pictures_pay_ = false;
   std::set<std::size_t> stale_;  ///< points whose errors are against another reference
 };

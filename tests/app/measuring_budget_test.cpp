@@ -135,7 +135,7 @@ TEST_P(ChartInTime, IsWhole) {
   EXPECT_EQ(count_of(svg, "<svg"), 1u);
   EXPECT_EQ(count_of(svg, "</svg>"), 1u);
 }
-INSTANTIATE_TEST_SUITE_P(MeasuringBudget, ChartInTime, testing::Values("spheres-1980", "terrain"));
+INSTANTIATE_TEST_SUITE_P(MeasuringBudget, ChartInTime, testing::Values("spheres-1980", "glass", "terrain"));
 
 TEST(MeasuringBudget, TheStabilitySuiteIsWholeAndInTime) {
   const TemporaryFolder folder;
