@@ -15,7 +15,8 @@ namespace {
 
 constexpr const char* kClassNames[kRayClassCount] = {"eye rays", "reflected and refracted rays", "shadow rays",
                                                      "incoherent shadow rays"};
-constexpr const char* kCallNames[kReplayCallCount] = {"coherent packets", "incoherent packets", "single rays"};
+constexpr const char* kCallNames[kReplayCallCount] = {"coherent packets", "incoherent packets",
+                                                      "packets told by their rays", "single rays"};
 constexpr double kHitTolerance = 1e-4;  ///< of a class's rays
 constexpr int kTrialPasses = 3;
 

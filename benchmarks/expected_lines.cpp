@@ -82,6 +82,8 @@ std::vector<Figure> made_lines() {
       at_most(kMostLoadingMemory, "loading", "reading OBJ, *: peak memory / arrays kept"),
       at_least(kLeastBenchShare, "bench", "bare Embree calls / raytree bench, * primary rays, *"),
       at_least(kLeastBenchShare, "bench", "bare Embree calls / raytree bench, * shadow rays, *"),
+      at_least(kLeastBenchShare, "bench", "bare Embree calls / raytree bench, * mirror rays, *"),
+      at_least(kLeastBenchShare, "bench", "bare Embree calls / raytree bench, * refracted rays, *"),
       at_least(kLeastBenchShare, "bench", "bare Embree calls / raytree bench, * bounce rays, *"),
       ratios_line("primary, * / *, *"),
       ratios_line("shadow, * / *, *"),

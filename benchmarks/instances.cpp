@@ -106,7 +106,7 @@ std::vector<Figure> measure_instances(const MeasureContext& context) {
   for (const BenchmarkRays kind : {BenchmarkRays::primary, BenchmarkRays::shadow, BenchmarkRays::bounce}) {
     context.progress(fmt::format("instances: {} rays", name_of(kind)));
     const RaySet& rays = sets[static_cast<std::size_t>(kind)];
-    const ReplayCalls calls = calls_of(embree_of(scene));
+    const ReplayCalls calls = calls_of(embree_of(scene), rays.coherence);
     SeamComparison comparison(scene, embree_of(scene), rays, calls);
     const PairedSpread pairs = measure_pairs([&] { return comparison.seam_seconds(); },
                                              [&] { return comparison.bare_seconds(); }, PairLimits());

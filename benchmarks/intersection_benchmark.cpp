@@ -178,10 +178,11 @@ RayRecord record_of(const RaySet& rays) {
   return record;
 }
 
-ReplayCalls calls_of(const EmbreeIntersector& embree) {
+ReplayCalls calls_of(const EmbreeIntersector& embree, Coherence coherence) {
   ReplayCalls calls;
-  calls.fill(ReplayCall::incoherent_packets);
-  if (embree.follows_packets_together())
+  const bool together = embree.follows_packets_together();
+  calls.fill(together && coherence == Coherence::mixed ? ReplayCall::told_packets : ReplayCall::incoherent_packets);
+  if (together)
     for (const RayClass coherent : {RayClass::coherent_nearest, RayClass::coherent_occlusion})
       calls[static_cast<std::size_t>(coherent)] = ReplayCall::coherent_packets;
   return calls;

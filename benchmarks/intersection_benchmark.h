@@ -90,7 +90,7 @@ double ask_tracer(const RayIntersector& tracer, const RaySet& rays, std::size_t 
 /// The rays as a record that can be replayed.
 RayRecord record_of(const RaySet& rays);
 
-/// The calls that the seam makes for each class of rays, but for mixed packets, which get theirs one by one.
-ReplayCalls calls_of(const EmbreeIntersector& embree);
+/// The calls that the seam makes for each class of rays, in batches of this coherence.
+ReplayCalls calls_of(const EmbreeIntersector& embree, Coherence coherence);
 
 }  // namespace raytree::benchmarks

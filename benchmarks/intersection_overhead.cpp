@@ -10,13 +10,12 @@ namespace raytree::benchmarks {
 std::vector<Figure> measure_intersection_overhead(const MeasureContext& context) {
   const Scene scene = prepared(reference_mesh_alone());
   const std::array<RaySet, kBenchmarkRaysCount> sets = benchmark_rays(scene);
-  const ReplayCalls calls = calls_of(embree_of(scene));
   std::vector<Figure> figures;
-  // Mixed packets get their call one by one: there is no one call to compare them with.
-  for (const BenchmarkRays kind : {BenchmarkRays::primary, BenchmarkRays::shadow, BenchmarkRays::bounce}) {
+  for (std::size_t i = 0; i < kBenchmarkRaysCount; ++i) {
+    const auto kind = static_cast<BenchmarkRays>(i);
     context.progress(fmt::format("bench: {} rays", name_of(kind)));
-    const RaySet& rays = sets[static_cast<std::size_t>(kind)];
-    SeamComparison comparison(scene, embree_of(scene), rays, calls);
+    const RaySet& rays = sets[i];
+    SeamComparison comparison(scene, embree_of(scene), rays, calls_of(embree_of(scene), rays.coherence));
     const PairedSpread pairs = measure_pairs([&] { return comparison.bare_seconds(); },
                                              [&] { return comparison.seam_seconds(); }, PairLimits());
     Figure figure;

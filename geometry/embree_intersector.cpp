@@ -19,11 +19,6 @@ using embree::PacketTypes;
 using embree::Query;
 using embree::traceable;
 
-/// Packets are followed together when no ray strays from the first by more than 60 degrees. Measured: with glass and
-/// mirror spheres following all packets together is as fast, with a glass model of 870,000 triangles this is 3 to 10 %
-/// faster; rays in random directions lose half their speed when followed together.
-constexpr float kAlikeCosine = 0.5f;
-
 /// As one vector: in two halves, as memcpy() may write them, they would not be there yet for who reads all of a
 /// packet's lanes at once, and wait for the cache.
 template <int Width>
@@ -96,18 +91,6 @@ bool may_meet(const embree::SceneBounds& bounds, const Ray& ray, const int* vali
   return may != 0;
 }
 
-/// Whether the first `count` of a packet's rays run so much alike that following them together is faster. What lies in
-/// the padding does not count: it depends on what was traced before.
-template <int Width, class Ray>
-bool runs_alike(const Ray& ray, std::size_t count) {
-  float least = 1;
-  for (int i = 0; i < Width; ++i) {
-    const float cosine = ray.dir_x[i] * ray.dir_x[0] + ray.dir_y[i] * ray.dir_y[0] + ray.dir_z[i] * ray.dir_z[0];
-    least = std::min(least, static_cast<std::size_t>(i) < count ? cosine : 1.0f);
-  }
-  return least >= kAlikeCosine;
-}
-
 /// Embree's id of the instance that was hit, as an index into ShapeSet::instances.
 inline InstanceId instance_of(unsigned int embree_id, GeometryId first_instance) {
   return embree_id == RTC_INVALID_GEOMETRY_ID ? kNoInstance : embree_id - first_instance;
@@ -130,7 +113,7 @@ void intersect_packets(RTCScene scene, const embree::SceneBounds& bounds, const 
       continue;
     }
     for (int i = 0; i < Width; ++i) embree::clear_hit(packet.hit, i);
-    if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet.ray, rays.size - first));
+    if (coherence == Coherence::mixed) query.set_coherent(embree::runs_alike<Width>(packet.ray, rays.size - first));
     query.intersect(scene, valid, packet);
     copy_lanes<Width>(hits.geometry + first, packet.hit.geomID);
     copy_lanes<Width>(hits.primitive + first, packet.hit.primID);
@@ -155,7 +138,7 @@ void occluded_packets(RTCScene scene, const embree::SceneBounds& bounds, const R
       std::fill_n(occluded + first, Width, std::uint8_t(0));
       continue;
     }
-    if (coherence == Coherence::mixed) query.set_coherent(runs_alike<Width>(packet, rays.size - first));
+    if (coherence == Coherence::mixed) query.set_coherent(embree::runs_alike<Width>(packet, rays.size - first));
     query.occluded(scene, valid, packet);
     // Embree marks an occluded ray by tfar = -infinity; a lane that was not live counts as open.
     for (int i = 0; i < Width; ++i) occluded[first + i] = (packet.tfar[i] < 0) & (valid[i] != 0);

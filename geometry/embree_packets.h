@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "geometry/embree_api.h"
@@ -77,6 +78,23 @@ template <class Hit>
 void clear_hit(Hit& hit, int lane) {
   hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
   hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+}
+
+/// Packets are followed together when no ray strays from the first by more than 60 degrees. Measured: with glass and
+/// mirror spheres following all packets together is as fast, with a glass model of 870,000 triangles this is 3 to 10 %
+/// faster; rays in random directions lose half their speed when followed together.
+inline constexpr float kAlikeCosine = 0.5f;
+
+/// Whether the first `count` of a packet's rays run so much alike that following them together is faster. What lies in
+/// the padding does not count: it depends on what was traced before.
+template <int Width, class Ray>
+bool runs_alike(const Ray& ray, std::size_t count) {
+  float least = 1;
+  for (int i = 0; i < Width; ++i) {
+    const float cosine = ray.dir_x[i] * ray.dir_x[0] + ray.dir_y[i] * ray.dir_y[0] + ray.dir_z[i] * ray.dir_z[0];
+    least = std::min(least, static_cast<std::size_t>(i) < count ? cosine : 1.0f);
+  }
+  return least >= kAlikeCosine;
 }
 
 }  // namespace raytree::embree

@@ -28,6 +28,7 @@ template <int Width>
 struct Workspace {
   static constexpr std::size_t kPackets = kReplayBlock / Width;
   alignas(64) int valid[kPackets][Width];
+  bool alike[kPackets];  ///< of told_packets
   alignas(64) typename PacketTypes<Width>::RayHit ray_hits[kPackets];
   alignas(64) typename PacketTypes<Width>::Ray rays[kPackets];
   alignas(64) RTCRayHit single_ray_hits[kReplayBlock];
@@ -58,9 +59,9 @@ class Replayer {
       embree::set_lane(work_.ray_hits[packet].ray, lane, ray.origin, ray.direction, ray.max_distance);
       embree::clear_hit(work_.ray_hits[packet].hit, lane);
     });
-    const auto start = Clock::now();
-    for (std::size_t p = 0; p < packets; ++p) query.intersect(scene_, work_.valid[p], work_.ray_hits[p]);
-    seconds = seconds_since(start);
+    seconds = timed(
+        packets, call, query, [&](std::size_t p) -> auto& { return work_.ray_hits[p].ray; },
+        [&](std::size_t p) { query.intersect(scene_, work_.valid[p], work_.ray_hits[p]); });
     for (std::size_t i = 0; i < size; ++i)
       hits += work_.ray_hits[i / Width].hit.geomID[i % Width] != RTC_INVALID_GEOMETRY_ID || stopped(i);
     return seconds;
@@ -83,14 +84,31 @@ class Replayer {
     const std::size_t packets = fill(rays, size, [&](std::size_t packet, int lane, const Ray& ray) {
       embree::set_lane(work_.rays[packet], lane, ray.origin, ray.direction, ray.max_distance);
     });
-    const auto start = Clock::now();
-    for (std::size_t p = 0; p < packets; ++p) query.occluded(scene_, work_.valid[p], work_.rays[p]);
-    seconds = seconds_since(start);
+    seconds = timed(
+        packets, call, query, [&](std::size_t p) -> auto& { return work_.rays[p]; },
+        [&](std::size_t p) { query.occluded(scene_, work_.valid[p], work_.rays[p]); });
     for (std::size_t i = 0; i < size; ++i) hits += work_.rays[i / Width].tfar[i % Width] < 0 || stopped(i);
     return seconds;
   }
 
  private:
+  /// Seconds of asking for packets [0, packets).
+  template <class RaysOf, class Ask>
+  double timed(std::size_t packets, ReplayCall call, Query& query, const RaysOf& rays_of, const Ask& ask) {
+    if (call != ReplayCall::told_packets) {
+      const auto start = Clock::now();
+      for (std::size_t p = 0; p < packets; ++p) ask(p);
+      return seconds_since(start);
+    }
+    for (std::size_t p = 0; p < packets; ++p) work_.alike[p] = embree::runs_alike<Width>(rays_of(p), Width);
+    const auto start = Clock::now();
+    for (std::size_t p = 0; p < packets; ++p) {
+      query.set_coherent(work_.alike[p]);
+      ask(p);
+    }
+    return seconds_since(start);
+  }
+
   template <class SetLane>
   std::size_t fill(const Ray* rays, std::size_t size, SetLane&& set) {
     const std::size_t packets = (size + Width - 1) / Width;

@@ -37,9 +37,10 @@ struct RayRecord {
   std::array<std::uint64_t, kRayClassCount> ray_counts() const;
 };
 
-/// The ways to ask Embree for a class of rays.
-enum class ReplayCall : std::uint8_t { coherent_packets, incoherent_packets, single_rays };
-inline constexpr std::size_t kReplayCallCount = 3;
+/// The ways to ask Embree for a class of rays; told_packets: coherent where a packet's rays run alike, as the
+/// intersector tells packets of Coherence::mixed, looked at outside the clock.
+enum class ReplayCall : std::uint8_t { coherent_packets, incoherent_packets, told_packets, single_rays };
+inline constexpr std::size_t kReplayCallCount = 4;
 using ReplayCalls = std::array<ReplayCall, kRayClassCount>;
 
 struct ReplayTally {

@@ -53,7 +53,8 @@ void expect_replays_agree(SceneDescription description) {
   EXPECT_GT(recorded.record.hits[2], 0u);
 
   const BareReplay replay(embree_of(scene), recorded.record);
-  for (const ReplayCall call : {ReplayCall::coherent_packets, ReplayCall::incoherent_packets, ReplayCall::single_rays})
+  for (const ReplayCall call : {ReplayCall::coherent_packets, ReplayCall::incoherent_packets, ReplayCall::told_packets,
+                                ReplayCall::single_rays})
     for (const int threads : {1, 2}) {
       ReplayCalls calls;
       calls.fill(call);
