@@ -39,6 +39,23 @@ struct FalseHits {
   int false_hits = 0;
 };
 
+/// Rays leave a point to both sides, eight of each kind of packet: calls seen(hits, k, direction, side) of each.
+template <class Seen>
+void leave_to_both_sides(const EmbreeIntersector& intersector, const SurfacePoint& point, RandomRays& random,
+                         Seen&& seen) {
+  RayBatch rays(8);
+  HitBatch hits(8);
+  for (const float side : {1.0f, -1.0f}) {
+    const Vec3f normal = point.geometric_normal * side;
+    rays.size = 0;
+    for (int k = 0; k < 8; ++k) rays.push(offset_origin(point, normal), random.leaving(normal), kInfinity);
+    for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
+      intersector.intersect(rays, coherence, hits);
+      for (std::size_t k = 0; k < 8; ++k) seen(hits, k, rays.direction(k), side);
+    }
+  }
+}
+
 /// Shoots rays at primitive after primitive, spawns from the hit to both sides, counts what meets its own primitive.
 /// `aim(i)` yields a point of primitive i, `own(hit, point, direction)` says whether a spawned ray's hit is a false
 /// one.
@@ -47,8 +64,6 @@ FalseHits count_false_hits(const ShapeSet& shapes, int primitives, GeometryId ge
                            Aim&& aim, Own&& own, const EmbreeOptions& options = {}) {
   const EmbreeIntersector intersector(shapes, options);
   FalseHits count;
-  RayBatch rays(64);
-  HitBatch hits(64);
   for (int i = 0; i < primitives; ++i) {
     const Vec3d target = aim(i);
     const Vec3f origin(target + random.direction() * size * std::pow(10.0, random.uniform(-1, 1.5)));
@@ -57,20 +72,12 @@ FalseHits count_false_hits(const ShapeSet& shapes, int primitives, GeometryId ge
     const Hit hit = intersector.intersect_one(origin, direction, kInfinity);
     if (hit.geometry != geometry || hit.primitive != static_cast<std::uint32_t>(i)) continue;
     const SurfacePoint point = surface_at(shapes, origin, direction, hit, false);
-    for (const float side : {1.0f, -1.0f}) {
-      const Vec3f normal = point.geometric_normal * side;
-      rays.size = 0;
-      for (int k = 0; k < 8; ++k) rays.push(offset_origin(point, normal), random.leaving(normal), kInfinity);
-      for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
-        intersector.intersect(rays, coherence, hits);
-        for (int k = 0; k < 8; ++k) {
-          ++count.left;
-          if (hits.geometry[k] == geometry && hits.primitive[k] == hit.primitive)
-            count.false_hits +=
-                own(hits[static_cast<std::size_t>(k)], point, rays.direction(static_cast<std::size_t>(k)), side);
-        }
-      }
-    }
+    leave_to_both_sides(intersector, point, random,
+                        [&](const HitBatch& hits, std::size_t k, const Vec3f& leaving, float side) {
+                          ++count.left;
+                          if (hits.geometry[k] == geometry && hits.primitive[k] == hit.primitive)
+                            count.false_hits += own(hits[k], point, leaving, side);
+                        });
   }
   return count;
 }

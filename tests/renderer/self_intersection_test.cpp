@@ -275,8 +275,6 @@ FalseHits instance_false_hits(const Setting& setting, Primitive primitive, bool 
   }
   const EmbreeIntersector intersector(shapes, EmbreeOptions{});
   FalseHits count;
-  RayBatch rays(64);
-  HitBatch hits(64);
   for (int i = 0; i < uses; ++i) {
     const Vec3d target = targets[static_cast<std::size_t>(i)];
     for (int shot = 0; shot < 3; ++shot) {
@@ -286,23 +284,16 @@ FalseHits instance_false_hits(const Setting& setting, Primitive primitive, bool 
       const Hit hit = intersector.intersect_one(origin, direction, kInfinity);
       if (hit.instance != static_cast<InstanceId>(i)) continue;
       const SurfacePoint point = surface_at(shapes, origin, direction, hit, false);
-      for (const float side : {1.0f, -1.0f}) {
-        const Vec3f normal = point.geometric_normal * side;
-        rays.size = 0;
-        for (int k = 0; k < 8; ++k) rays.push(offset_origin(point, normal), random.leaving(normal), kInfinity);
-        for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
-          intersector.intersect(rays, coherence, hits);
-          for (std::size_t k = 0; k < 8; ++k) {
+      test::leave_to_both_sides(
+          intersector, point, random, [&](const HitBatch& hits, std::size_t k, const Vec3f& leaving, float side) {
             ++count.left;
-            if (hits.geometry[k] == kNoGeometry || hits.instance[k] != hit.instance) continue;
+            if (hits.geometry[k] == kNoGeometry || hits.instance[k] != hit.instance) return;
             if (primitive == Primitive::sphere && side < 0) {
-              const double chord = std::abs(Vec3d(rays.direction(k)).dot(Vec3d(point.geometric_normal))) * setting.size;
-              if (hits.distance[k] >= chord / 2 || chord <= 4 * point.clearance) continue;
+              const double chord = std::abs(Vec3d(leaving).dot(Vec3d(point.geometric_normal))) * setting.size;
+              if (hits.distance[k] >= chord / 2 || chord <= 4 * point.clearance) return;
             }
             ++count.false_hits;
-          }
-        }
-      }
+          });
     }
   }
   return count;
